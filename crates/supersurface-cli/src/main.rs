@@ -1,0 +1,2 @@
+//! The `supersurface` command.
+fn main() {}

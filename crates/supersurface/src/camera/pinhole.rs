@@ -1,0 +1,144 @@
+//! A pinhole camera with the usual radial and tangential lens distortion.
+
+use crate::{Direction, Point, Vector};
+
+/// Numbers from which no camera can be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("camera {what} is {value}: it must be {range}")]
+pub struct InvalidCamera {
+    /// The quantity.
+    pub what: &'static str,
+    /// The value that was given.
+    pub value: f64,
+    /// The range in words.
+    pub range: &'static str,
+}
+
+/// A pinhole camera in its optical frame: x right, y down, z forward, pixel centres at integers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    size: [usize; 2],
+    focal: [f64; 2],
+    centre: [f64; 2],
+    distortion: [f64; 8],
+}
+
+impl Camera {
+    /// Largest width or height that is accepted, in pixels.
+    pub const MAX_SIDE: usize = 1 << 15;
+
+    /// `size` is [width, height] in pixels, `focal` is [fx, fy] and `centre` [cx, cy], in pixels.
+    pub fn new(size: [usize; 2], focal: [f64; 2], centre: [f64; 2]) -> Result<Self, InvalidCamera> {
+        let check = |ok: bool, what, value, range| {
+            if ok { Ok(()) } else { Err(InvalidCamera { what, value, range }) }
+        };
+        for (n, what) in size.iter().zip(["width", "height"]) {
+            check((1..=Self::MAX_SIDE).contains(n), what, *n as f64, "in [1, 32768] pixels")?;
+        }
+        for (f, what) in focal.iter().zip(["fx", "fy"]) {
+            check(*f > 0.0 && f.is_finite(), what, *f, "positive and finite")?;
+        }
+        for (c, what) in centre.iter().zip(["cx", "cy"]) {
+            check(c.is_finite(), what, *c, "finite")?;
+        }
+        Ok(Self { size, focal, centre, distortion: [0.0; 8] })
+    }
+
+    /// The same camera with lens distortion `[k1, k2, p1, p2, k3, k4, k5, k6]` (the order of
+    /// OpenCV's and ROS's `D`; fewer coefficients are padded with zeros by the caller).
+    pub fn with_distortion(mut self, distortion: [f64; 8]) -> Result<Self, InvalidCamera> {
+        for d in distortion {
+            if !d.is_finite() {
+                let what = "distortion coefficient";
+                return Err(InvalidCamera { what, value: d, range: "finite" });
+            }
+        }
+        self.distortion = distortion;
+        Ok(self)
+    }
+
+    /// Width and height in pixels.
+    pub const fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Focal lengths [fx, fy] in pixels.
+    pub const fn focal(&self) -> [f64; 2] {
+        self.focal
+    }
+
+    /// Principal point [cx, cy] in pixels.
+    pub const fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// The point at depth 1 m (z = 1) that pixel (u, v) sees: its undistorted image coordinates.
+    ///
+    /// Distortion is undone by fixed-point iteration, which converges for lenses whose map is one to
+    /// one over the image.
+    pub fn unproject(&self, u: f64, v: f64) -> Vector {
+        let x0 = (u - self.centre[0]) / self.focal[0];
+        let y0 = (v - self.centre[1]) / self.focal[1];
+        if self.distortion == [0.0; 8] {
+            return Vector::new(x0, y0, 1.0);
+        }
+        let (mut x, mut y) = (x0, y0);
+        for _ in 0..20 {
+            let (radial, dx, dy) = self.distort(x, y);
+            if radial.abs() < 1e-6 {
+                break;
+            }
+            let (nx, ny) = ((x0 - dx) / radial, (y0 - dy) / radial);
+            let moved = (nx - x).abs() + (ny - y).abs();
+            (x, y) = (nx, ny);
+            if moved < 1e-12 {
+                break;
+            }
+        }
+        Vector::new(x, y, 1.0)
+    }
+
+    /// Unit direction of the ray through pixel (u, v), in the optical frame.
+    pub fn direction(&self, u: f64, v: f64) -> Direction {
+        Direction::new_normalize(self.unproject(u, v))
+    }
+
+    /// Pixel coordinates of a point in the optical frame; `None` behind the camera.
+    pub fn project(&self, p: &Point) -> Option<[f64; 2]> {
+        if p.z <= 1e-9 {
+            return None;
+        }
+        let (x, y) = (p.x / p.z, p.y / p.z);
+        let (radial, dx, dy) = self.distort(x, y);
+        let u = self.focal[0] * (x * radial + dx) + self.centre[0];
+        let v = self.focal[1] * (y * radial + dy) + self.centre[1];
+        Some([u, v])
+    }
+
+    /// Radial factor and tangential shift of the lens at undistorted image coordinates.
+    fn distort(&self, x: f64, y: f64) -> (f64, f64, f64) {
+        let [k1, k2, p1, p2, k3, k4, k5, k6] = self.distortion;
+        let r2 = x * x + y * y;
+        let numerator = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        let denominator = 1.0 + r2 * (k4 + r2 * (k5 + r2 * k6));
+        let dx = 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+        let dy = p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
+        (numerator / denominator, dx, dy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distortion_is_undone() {
+        let camera = Camera::new([640, 480], [517.6, 517.8], [318.0, 242.8])
+            .and_then(|c| c.with_distortion([-0.1, -0.05, 0.001, 3e-4, 0.01, 0.0, 0.0, 0.0]))
+            .unwrap();
+        for (u, v) in [(0.0, 0.0), (639.0, 479.0), (100.0, 300.0), (318.0, 242.8)] {
+            let back = camera.project(&Point::from(camera.unproject(u, v) * 0.7)).unwrap();
+            assert!((back[0] - u).abs() < 1e-6 && (back[1] - v).abs() < 1e-6);
+        }
+    }
+}

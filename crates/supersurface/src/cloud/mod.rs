@@ -1,0 +1,5 @@
+//! Floor 6: point clouds.
+
+mod point_cloud;
+
+pub use point_cloud::PointCloud;

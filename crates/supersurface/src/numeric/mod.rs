@@ -1,0 +1,5 @@
+//! Floor 1: the small mathematics that every shape is made of.
+
+pub mod powers;
+pub mod random;
+pub mod superellipse;

@@ -1,0 +1,1 @@
+//! Floor 9: cloud to table to objects to surfaces to grasps.

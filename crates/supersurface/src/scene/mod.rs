@@ -1,0 +1,1 @@
+//! Floor 8: scenes of supersurfaces, looked at by a simulated depth camera.

@@ -1,0 +1,59 @@
+//! Implicit form: gauge, gradient and radial distance (equations 9, 26 to 29).
+
+use super::Superellipsoid;
+use crate::numeric::superellipse::{norm, weighted};
+use crate::shape::Implicit;
+use crate::{Point, Vector};
+
+impl Implicit for Superellipsoid {
+    /// `g = (ρ̂^p1 + |z/a3|^p1)^(1/p1)` with `ρ̂ = (|x/a1|^p2 + |y/a2|^p2)^(1/p2)`, `p = 2/ε`.
+    #[inline]
+    fn gauge(&self, p: &Point) -> f64 {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let radius = norm((p.x / a1).abs(), (p.y / a2).abs(), 2.0 / e2);
+        norm(radius, (p.z / a3).abs(), 2.0 / e1)
+    }
+
+    /// `∂g/∂x = g w1 w2 / x`, `∂g/∂y = g w1 (1 - w2) / y`, `∂g/∂z = g (1 - w1) / z`; a component is
+    /// 0 where its coordinate is (the limit for ε < 2).
+    fn gradient(&self, p: &Point) -> Vector {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let (u, v, w) = ((p.x / a1).abs(), (p.y / a2).abs(), (p.z / a3).abs());
+        let planar = weighted(u, v, 2.0 / e2);
+        let whole = weighted(planar.norm, w, 2.0 / e1);
+        let share = |weight: f64, c: f64| if c == 0.0 { 0.0 } else { whole.norm * weight / c };
+        Vector::new(
+            share(whole.first * planar.first, p.x),
+            share(whole.first * planar.second, p.y),
+            share(whole.second, p.z),
+        )
+    }
+
+    fn bounds(&self) -> [Point; 2] {
+        let a = Vector::from(self.semi_axes);
+        [Point::from(-a), Point::from(a)]
+    }
+}
+
+impl Superellipsoid {
+    /// Signed radial distance `|p| (1 - 1/g)` in metres, positive outside (equations 27 to 29 with
+    /// `β = 1/g`). At the centre it is minus the least semi-axis.
+    ///
+    /// ```
+    /// use supersurface::{Point, shape::Superellipsoid};
+    /// let ball = Superellipsoid::new([2.0; 3], [1.0, 1.0])?;
+    /// assert!((ball.radial_distance(&Point::new(0.0, 3.0, 4.0)) - 3.0).abs() < 1e-14);
+    /// # Ok::<(), supersurface::shape::InvalidShape>(())
+    /// ```
+    #[inline]
+    pub fn radial_distance(&self, p: &Point) -> f64 {
+        let g = self.gauge(p);
+        if g == 0.0 {
+            let [a, b, c] = self.semi_axes;
+            return -a.min(b).min(c);
+        }
+        p.coords.norm() * (1.0 - 1.0 / g)
+    }
+}

@@ -1,0 +1,47 @@
+//! Parametric form and normal (equation 7 and FORMULAS §6).
+
+use super::Superellipsoid;
+use crate::numeric::powers::{quadrant_cos_sin, signed_power};
+use crate::shape::Parametric;
+use crate::{Direction, Point, Vector};
+
+impl Parametric for Superellipsoid {
+    /// `(a1 cos^ε1 η cos^ε2 ω, a2 cos^ε1 η sin^ε2 ω, a3 sin^ε1 η)` with signed powers;
+    /// η in [-π/2, π/2], ω in [-π, π).
+    fn point(&self, eta: f64, omega: f64) -> Point {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
+        let c = signed_power(ce, e1);
+        let (x, y) = (signed_power(co, e2), signed_power(so, e2));
+        Point::new(a1 * c * x, a2 * c * y, a3 * signed_power(se, e1))
+    }
+
+    fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
+        angular_normal(self.semi_axes, self.exponents, eta, omega)
+    }
+}
+
+/// `ν = (cos^(2-ε1) η cos^(2-ε2) ω / a1, cos^(2-ε1) η sin^(2-ε2) ω / a2, sin^(2-ε1) η / a3)`,
+/// normalised. Superellipsoid and supertoroid share it. `None` for exponents from 2, where seams
+/// are edges.
+pub(crate) fn angular_normal(
+    [a1, a2, a3]: [f64; 3],
+    [e1, e2]: [f64; 2],
+    eta: f64,
+    omega: f64,
+) -> Option<Direction> {
+    if e1 >= 2.0 || e2 >= 2.0 {
+        return None;
+    }
+    let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
+    let c = signed_power(ce, 2.0 - e1);
+    let n = Vector::new(
+        c * signed_power(co, 2.0 - e2) / a1,
+        c * signed_power(so, 2.0 - e2) / a2,
+        signed_power(se, 2.0 - e1) / a3,
+    );
+    // scaled first: 1/a overflows nothing but the sum of squares of 1e200 would
+    let largest = n.amax();
+    (largest > 0.0 && largest.is_finite()).then(|| Direction::new_normalize(n / largest))
+}

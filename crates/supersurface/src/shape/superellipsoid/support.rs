@@ -1,0 +1,40 @@
+//! Support point in closed form (FORMULAS §9).
+
+use super::Superellipsoid;
+use crate::numeric::powers::power;
+use crate::numeric::superellipse::dual_norm;
+use crate::shape::SupportMap;
+use crate::{Point, Vector};
+
+impl SupportMap for Superellipsoid {
+    /// With `u_i = |a_i n_i|`, `g = ‖(u1, u2)‖_q2`, `h = ‖(g, u3)‖_q1`, `t = ε/(2 - ε)`:
+    /// `x = a1 sgn(n_x) (u1/g)^t2 (g/h)^t1`, likewise y; `z = a3 sgn(n_z) (u3/h)^t1`.
+    /// From ε = 2 the support point of the convex hull.
+    fn support_point(&self, n: &Vector) -> Point {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let u = [(a1 * n.x).abs(), (a2 * n.y).abs(), (a3 * n.z).abs()];
+        let g = dual_norm(u[0], u[1], e2);
+        let h = dual_norm(g, u[2], e1);
+        if h == 0.0 || !h.is_finite() {
+            return Point::origin();
+        }
+        let planar = dual_share(g, h, e1);
+        let (x, y) =
+            if g > 0.0 { (dual_share(u[0], g, e2), dual_share(u[1], g, e2)) } else { (0.0, 0.0) };
+        let z = dual_share(u[2], h, e1);
+        Point::new(
+            (a1 * x * planar).copysign(n.x),
+            (a2 * y * planar).copysign(n.y),
+            (a3 * z).copysign(n.z),
+        )
+    }
+}
+
+/// `(part/whole)^(ε/(2-ε))`; for ε >= 2 the larger part takes all.
+fn dual_share(part: f64, whole: f64, epsilon: f64) -> f64 {
+    if epsilon >= 2.0 {
+        return if part >= whole { 1.0 } else { 0.0 };
+    }
+    power(part / whole, epsilon / (2.0 - epsilon))
+}

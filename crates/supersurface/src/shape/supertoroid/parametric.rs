@@ -1,0 +1,23 @@
+//! Parametric form and normal (equation 11 and FORMULAS §6).
+
+use super::Supertoroid;
+use crate::numeric::powers::{quadrant_cos_sin, signed_power};
+use crate::shape::Parametric;
+use crate::shape::superellipsoid::angular_normal;
+use crate::{Direction, Point};
+
+impl Parametric for Supertoroid {
+    /// `(a1 (a4 + cos^ε1 η) cos^ε2 ω, a2 (a4 + cos^ε1 η) sin^ε2 ω, a3 sin^ε1 η)`; η, ω in [-π, π).
+    fn point(&self, eta: f64, omega: f64) -> Point {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
+        let r = self.ring_ratio + signed_power(ce, e1);
+        let (x, y) = (signed_power(co, e2), signed_power(so, e2));
+        Point::new(a1 * r * x, a2 * r * y, a3 * signed_power(se, e1))
+    }
+
+    fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
+        angular_normal(self.semi_axes, self.exponents, eta, omega)
+    }
+}
