@@ -1,7 +1,43 @@
 //! Floor 7: one supersurface for the points of one object.
+//!
+//! The fit maximises the likelihood of the points' first-order distances under a mixture of a Student-t and
+//! a constant density of outliers, whose scale and share are estimated. It begins from frames that the
+//! structure of the cloud suggests, ranks them by a coarse search, refines the best, and tries the
+//! near-symmetries of the family. For a single view it adds what else is known: the body stands on its
+//! support, and it does not stick out into space that the camera's rays prove empty.
+//!
+//! ```
+//! use supersurface::{Point, fit::{fit, FitOptions, View}};
+//! use supersurface::shape::{Parametric, Superellipsoid};
+//! let tin = Superellipsoid::new([0.03, 0.03, 0.05], [0.2, 1.0])?;
+//! let mut points = Vec::new();
+//! for i in 0..40 {
+//!     for j in 0..40 {
+//!         points.push(tin.point(-1.57 + 3.14 * i as f64 / 39.0, 6.28 * j as f64 / 40.0));
+//!     }
+//! }
+//! let found = fit(&View::all_around(&points), &FitOptions::default())?;
+//! assert!(found.residual < 2e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! It does not promise the global optimum, and the hidden side of a single view is the simplest body that
+//! the evidence allows, not a measurement.
+
+mod evidence;
+mod kernel;
+mod noise;
+mod parameters;
+mod search;
+mod solver;
+mod start;
+mod switch;
+mod terms;
+
+pub use parameters::Family;
 
 use crate::Point;
-use crate::shape::{Plane, Posed};
+use crate::shape::{InvalidShape, Plane, Posed};
 use crate::surface::Surface;
 
 /// What was seen of an object.
@@ -11,8 +47,26 @@ pub struct View<'a> {
     pub points: &'a [Point],
     /// Where the sensor stood; `None` when the object was seen from all around.
     pub viewpoint: Option<Point>,
-    /// The plane that the object stands on.
+    /// The plane that bounds the object from below, its normal towards the object.
     pub support: Option<Plane>,
+    /// True when the object stands on the support, even if its foot is not seen.
+    pub standing: bool,
+    /// Points seen beside or behind the object: nothing lies between the viewpoint and them.
+    pub free: &'a [Point],
+}
+
+impl<'a> View<'a> {
+    /// Points from all sides, with nothing else known.
+    pub const fn all_around(points: &'a [Point]) -> Self {
+        Self { points, viewpoint: None, support: None, standing: false, free: &[] }
+    }
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FitOptions {
+    /// The family; `None` lets the evidence choose.
+    pub family: Option<Family>,
 }
 
 /// A recovered supersurface and how sure it is.
@@ -21,14 +75,16 @@ pub struct View<'a> {
 pub struct Fit {
     /// The shape in the frame of the points.
     pub surface: Posed<Surface>,
-    /// Standard deviation of the inliers about the surface, in metres.
+    /// Scale of the inliers' scatter about the surface (of a Student-t with 3 degrees of freedom), in
+    /// metres.
     pub noise: f64,
-    /// Median of the absolute distances of all points, in metres.
+    /// Median of the absolute first-order distances of all points, in metres.
     pub residual: f64,
-    /// Which of the points belong to the surface.
+    /// Which of the view's points belong to the surface (probability over one half); false for points that
+    /// are not finite.
     pub inliers: Vec<bool>,
-    /// By how much the log-likelihood a point (in nats, penalised) of this family exceeds that of the
-    /// other; 0 when only one was tried.
+    /// Evidence for the chosen family against the other, in nats, after the price of parameters; 0 when one
+    /// family was asked for.
     pub margin: f64,
 }
 
@@ -38,4 +94,38 @@ impl Fit {
         let n = self.inliers.iter().filter(|i| **i).count();
         n as f64 / self.inliers.len().max(1) as f64
     }
+}
+
+/// Why points give no surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Fewer finite points than a surface has parameters.
+    #[error("{found} finite points: a surface needs at least {needed}")]
+    TooFewPoints {
+        /// Finite points in the view.
+        found: usize,
+        /// The least number.
+        needed: usize,
+    },
+    /// All points are one point (or so near to it that rounding hides the rest).
+    #[error("all {points} points are the same")]
+    OnePoint {
+        /// Finite points in the view.
+        points: usize,
+    },
+    /// All points lie on a line.
+    #[error("all {points} points lie on one line")]
+    Line {
+        /// Finite points in the view.
+        points: usize,
+    },
+    /// The numbers left the range of a shape.
+    #[error(transparent)]
+    Invalid(#[from] InvalidShape),
+}
+
+/// Fits one supersurface.
+pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
+    search::search(view, options)
 }

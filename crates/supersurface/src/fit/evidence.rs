@@ -1,0 +1,54 @@
+//! Which family: by the likelihood of the points and by whether the hole is really seen.
+
+use super::kernel::distance;
+use super::parameters::{COUNT, Family};
+use super::solver::Hypothesis;
+use crate::Vector;
+
+/// Points of a scan are correlated: about so many carry the evidence of one.
+const PATCH: f64 = 8.0;
+
+/// By how many nats a point the toroid explains the same points better, after the price of its further
+/// parameter (half a logarithm of the independent points, as in BIC). Positive: the toroid.
+pub(super) fn toroid_margin(ellipsoid: &Hypothesis, toroid: &Hypothesis, points: usize) -> f64 {
+    let independent = points as f64 / PATCH;
+    let price = 0.5 * independent.max(2.0).ln();
+    (ellipsoid.cost - toroid.cost) / PATCH - price
+}
+
+/// True when the cloud shows the hole of a toroid: enough points lie on the inner half of the tube, none
+/// lies where the hole must be empty, and the hole is wider than the noise.
+pub(super) fn shows_hole(toroid: &Hypothesis, points: &[Vector]) -> bool {
+    let s = &toroid.parameters;
+    if s.family != Family::Supertoroid {
+        return false;
+    }
+    let axes = s.log_axes.map(f64::exp);
+    let hole = (s.ring - 1.0) * axes[0].min(axes[1]);
+    let outer = (s.ring + 1.0) * axes[0].min(axes[1]);
+    if hole < 4.0 * toroid.mixture.scale || hole < 0.12 * outer {
+        return false;
+    }
+    let (mut inner, mut blocked, mut inliers) = (0usize, 0usize, 0usize);
+    for p in points {
+        let q = s.rotation.inverse_transform_vector(&(p - s.position));
+        let radius = crate::numeric::superellipse::norm(
+            (q.x / axes[0]).abs(),
+            (q.y / axes[1]).abs(),
+            2.0 / s.exponents[1],
+        );
+        if radius < 0.8 * (s.ring - 1.0) && q.z.abs() < 1.2 * axes[2] {
+            blocked += 1;
+        }
+        let d = distance::<false>(s, p, &mut [0.0; COUNT]);
+        if d.abs() < 4.0 * toroid.mixture.scale {
+            inliers += 1;
+            // on the wall of the hole, not on the ridge over it
+            if radius < s.ring - 0.35 && q.z.abs() < 0.95 * axes[2] {
+                inner += 1;
+            }
+        }
+    }
+    let n = points.len() as f64;
+    inliers as f64 > 0.6 * n && inner as f64 > 0.06 * n && (blocked as f64) < 0.03 * n
+}

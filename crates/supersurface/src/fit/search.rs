@@ -1,0 +1,199 @@
+//! The way from points to a fit: normalise, search each family, choose, and judge every point.
+
+use super::evidence::{shows_hole, toroid_margin};
+use super::kernel::distance;
+use super::noise::Mixture;
+use super::parameters::{COUNT, Family, Parameters};
+use super::solver::{Hypothesis, Schedule, Workspace, refine};
+use super::start::{quantile, starts};
+use super::switch::relatives;
+use super::terms::{Support, Terms};
+use super::{Fit, FitError, FitOptions, View};
+use crate::{Point, Vector};
+
+/// Fewer points than this determine no surface.
+const LEAST_POINTS: usize = 12;
+/// Points that rank the starts, that refine the best of them, and that decide.
+const COARSE: usize = 100;
+const MIDDLE: usize = 240;
+const FINE: usize = 500;
+/// How many starts are refined.
+const KEPT: usize = 3;
+/// Outlier density a unit of normalised length: along a ray it is a constant.
+const OUTLIER_DENSITY: f64 = 0.25;
+/// Noise is never estimated below this share of the cloud's size.
+const NOISE_FLOOR: f64 = 1e-5;
+/// The support is known no better than this share of the cloud's size.
+const SUPPORT_TOLERANCE: f64 = 0.01;
+
+pub(super) fn search(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
+    let cloud = Normalised::new(view)?;
+    let (hypothesis, margin) = match options.family {
+        Some(family) => (cloud.best(family), 0.0),
+        None => cloud.choose(),
+    };
+    cloud.judge(view, &hypothesis, margin)
+}
+
+/// The view with zero mean and unit root mean square.
+struct Normalised {
+    centre: Vector,
+    scale: f64,
+    coarse: Vec<Vector>,
+    middle: Vec<Vector>,
+    fine: Vec<Vector>,
+    terms: Terms,
+}
+
+impl Normalised {
+    fn new(view: &View<'_>) -> Result<Self, FitError> {
+        let points: Vec<Vector> = view
+            .points
+            .iter()
+            .map(|p| p.coords)
+            .filter(|p| p.iter().all(|v| v.is_finite()))
+            .collect();
+        let found = points.len();
+        if found < LEAST_POINTS {
+            return Err(FitError::TooFewPoints { found, needed: LEAST_POINTS });
+        }
+        // around the first point, so that far coordinates do not cancel, and by the largest, so that squares
+        // do not overflow
+        let origin = points[0];
+        let reach = points.iter().map(|p| (p - origin).amax()).fold(0.0, f64::max);
+        let magnitude = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        if reach.is_nan() || reach <= 1e-12 * magnitude || reach.is_infinite() {
+            return Err(FitError::OnePoint { points: found });
+        }
+        let n = found as f64;
+        let mean: Vector = points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n;
+        let centre = origin + mean * reach;
+        let square = points.iter().map(|p| ((p - centre) / reach).norm_squared()).sum::<f64>() / n;
+        let scale = square.sqrt() * reach;
+        if !(scale > 0.0 && scale.is_normal()) {
+            return Err(FitError::OnePoint { points: found });
+        }
+        let inward = |p: &Vector| (p - centre) / scale;
+        let sample = |count: usize| spread(&points, count).map(inward).collect::<Vec<_>>();
+        let fine = sample(FINE);
+        if is_line(&fine) {
+            return Err(FitError::Line { points: found });
+        }
+        let support = view.support.map(|plane| Support {
+            normal: plane.normal().into_inner(),
+            offset: (plane.normal().dot(&centre) + plane.offset()) / scale,
+            standing: view.standing,
+            tolerance: SUPPORT_TOLERANCE,
+        });
+        let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
+        let free = view.free.iter().map(|p| inward(&p.coords)).collect();
+        let terms = Terms { support, viewpoint: outside, free };
+        Ok(Self { centre, scale, coarse: sample(COARSE), middle: sample(MIDDLE), fine, terms })
+    }
+
+    /// The best body of one family.
+    fn best(&self, family: Family) -> Hypothesis {
+        let mut work = Workspace::default();
+        let candidates = starts(&self.middle, &self.terms, family);
+        let mut ranked: Vec<Hypothesis> = candidates
+            .iter()
+            .map(|s| refine(&begin(s), &self.coarse, &self.terms, &coarse_schedule(s), &mut work))
+            .collect();
+        ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        ranked.truncate(KEPT);
+        let finer = |h: &Hypothesis, work: &mut Workspace| {
+            refine(h, &self.middle, &self.terms, &schedule(12, 2.0 * h.mixture.scale), work)
+        };
+        let mut best = ranked
+            .iter()
+            .map(|h| finer(h, &mut work))
+            .min_by(|a, b| a.cost.total_cmp(&b.cost))
+            .unwrap_or_else(|| begin(&ball(family)));
+        for relative in relatives(&best.parameters, self.terms.viewpoint) {
+            let start = Hypothesis { parameters: relative, ..best };
+            let scale = (2.0 * best.mixture.scale).max(0.05);
+            let tried = refine(&start, &self.middle, &self.terms, &schedule(10, scale), &mut work);
+            if tried.cost < best.cost - 0.5 {
+                best = tried;
+            }
+        }
+        refine(&best, &self.fine, &self.terms, &schedule(15, best.mixture.scale), &mut work)
+    }
+
+    /// The better of the two families and its margin in nats.
+    fn choose(&self) -> (Hypothesis, f64) {
+        let ellipsoid = self.best(Family::Superellipsoid);
+        let toroid = self.best(Family::Supertoroid);
+        let margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
+        if margin > 0.0 && shows_hole(&toroid, &self.fine) {
+            (toroid, margin)
+        } else {
+            (ellipsoid, -margin)
+        }
+    }
+
+    fn judge(&self, view: &View<'_>, h: &Hypothesis, margin: f64) -> Result<Fit, FitError> {
+        let s = &h.parameters;
+        let mut row = [0.0; COUNT];
+        let mut distances = Vec::with_capacity(view.points.len());
+        let judge = |p: &Point| {
+            let x = (p.coords - self.centre) / self.scale;
+            if !x.iter().all(|v| v.is_finite()) {
+                return false;
+            }
+            let d = distance::<false>(s, &x, &mut row);
+            distances.push(d.abs());
+            h.mixture.belongs(d) > 0.5
+        };
+        let inliers = view.points.iter().map(judge).collect();
+        Ok(Fit {
+            surface: s.surface(&self.centre, self.scale)?,
+            noise: h.mixture.scale * self.scale,
+            residual: quantile(&mut distances, 0.5) * self.scale,
+            inliers,
+            margin,
+        })
+    }
+}
+
+fn begin(s: &Parameters) -> Hypothesis {
+    let mixture = Mixture { scale: 0.1, outliers: 0.1, density: OUTLIER_DENSITY };
+    Hypothesis { parameters: *s, mixture, cost: f64::MAX }
+}
+
+/// The scale of the first rounds is tied to the start's own body, so that a small body among outliers is not
+/// swallowed by a wide kernel.
+fn coarse_schedule(s: &Parameters) -> Schedule {
+    let size = s.half_extents().iter().sum::<f64>() / 3.0;
+    schedule(8, 0.12 * size)
+}
+
+fn schedule(rounds: usize, scale: f64) -> Schedule {
+    Schedule { rounds, scale, decay: 0.7, floor: NOISE_FLOOR, tolerance: 0.02 }
+}
+
+fn ball(family: Family) -> Parameters {
+    Parameters {
+        family,
+        log_axes: [0.0; 3],
+        ring: 2.0,
+        exponents: [1.0; 2],
+        position: Vector::zeros(),
+        rotation: nalgebra::Rotation3::identity(),
+    }
+}
+
+/// About `count` of the points, evenly spread over their order.
+fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
+    let n = points.len();
+    let taken = n.min(count);
+    (0..taken).map(move |i| &points[i * n / taken])
+}
+
+/// True when the points have no second direction.
+fn is_line(points: &[Vector]) -> bool {
+    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
+    let mut values = nalgebra::SymmetricEigen::new(scatter / points.len() as f64).eigenvalues;
+    values.as_mut_slice().sort_by(f64::total_cmp);
+    values[1] < 1e-10 * values[2]
+}

@@ -1,0 +1,253 @@
+//! Where to begin: bodies laid into frames that the structure of the cloud suggests.
+//!
+//! Frames come from the support (upright, turned to the least bounding rectangle), from the principal axes
+//! of all points, and from the scatter of local normals. Each gives three choices of the z axis and, where
+//! two axes are alike, a start turned by 45 degrees. Semi-axes are half extents between low quantiles; the
+//! side that the camera does not see is completed along the viewing direction.
+
+use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
+
+use super::parameters::{Family, Parameters, RINGS};
+use super::terms::Terms;
+use crate::Vector;
+
+/// Quantile that stands for an end of the cloud along an axis.
+const TAIL: f64 = 0.02;
+/// How far the hidden side is completed, in lateral sizes.
+const DEPTHS: [f64; 2] = [0.3, 1.0];
+/// Exponents of every start.
+const EXPONENT: f64 = 0.6;
+/// Two frames whose axes agree within this cosine are one.
+const SAME_AXIS: f64 = 0.985;
+
+/// All starts of a family for normalised points.
+pub(super) fn starts(points: &[Vector], terms: &Terms, family: Family) -> Vec<Parameters> {
+    let mut out = Vec::new();
+    for frame in frames(points, terms) {
+        let extents = Extents::of(points, &frame, terms);
+        let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
+        for depth in depths {
+            extents.completed(*depth).bodies(points, &frame, family, &mut out);
+        }
+    }
+    out
+}
+
+/// Right-handed frames without near duplicates.
+fn frames(points: &[Vector], terms: &Terms) -> Vec<Matrix3<f64>> {
+    let mut out: Vec<Matrix3<f64>> = Vec::new();
+    let mut push = |frame: Matrix3<f64>| {
+        let known = out.iter().any(|other| {
+            (0..3).all(|i| (0..3).any(|j| frame.column(i).dot(&other.column(j)).abs() > SAME_AXIS))
+        });
+        if !known {
+            out.push(frame);
+        }
+    };
+    if let Some(support) = terms.support {
+        push(upright(points, &support.normal));
+    }
+    push(axes_of(&scatter(points.iter().copied())));
+    if let Some(normals) = planar_normals(points) {
+        let sum: Matrix3<f64> = normals.iter().map(|n| n * n.transpose()).sum();
+        push(axes_of(&sum));
+    }
+    out
+}
+
+/// Covariance of points about their mean.
+fn scatter(points: impl Iterator<Item = Vector> + Clone) -> Matrix3<f64> {
+    let n = points.clone().count().max(1) as f64;
+    let mean: Vector = points.clone().sum::<Vector>() / n;
+    points.map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
+}
+
+/// Eigenvectors in rising order of the eigenvalues, right-handed.
+fn axes_of(m: &Matrix3<f64>) -> Matrix3<f64> {
+    let eigen = SymmetricEigen::new(*m);
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let x: Vector = eigen.eigenvectors.column(order[0]).into();
+    let y: Vector = eigen.eigenvectors.column(order[1]).into();
+    Matrix3::from_columns(&[x, y, x.cross(&y)])
+}
+
+/// The frame with z along `normal` in which the footprint's bounding rectangle is least.
+fn upright(points: &[Vector], normal: &Vector) -> Matrix3<f64> {
+    let helper = if normal.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
+    let u = (helper - normal * normal.dot(&helper)).normalize();
+    let v = normal.cross(&u);
+    let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.dot(&u), p.dot(&v)]).collect();
+    let mut buffer = Vec::with_capacity(flat.len());
+    let mut width = |angle: f64| {
+        let (s, c) = angle.sin_cos();
+        buffer.clear();
+        buffer.extend(flat.iter().map(|p| p[0] * c + p[1] * s));
+        let low = quantile(&mut buffer, TAIL);
+        quantile(&mut buffer, 1.0 - TAIL) - low
+    };
+    let mut best = (f64::INFINITY, 0.0);
+    for degrees in (0..90).step_by(6) {
+        let angle = f64::from(degrees).to_radians();
+        let area = width(angle) * width(angle + std::f64::consts::FRAC_PI_2);
+        if area < best.0 {
+            best = (area, angle);
+        }
+    }
+    let (s, c) = best.1.sin_cos();
+    let x = u * c + v * s;
+    Matrix3::from_columns(&[x, normal.cross(&x), *normal])
+}
+
+/// Normals of the flatter half of the neighbourhoods of up to 120 points; `None` for too few points.
+fn planar_normals(points: &[Vector]) -> Option<Vec<Vector>> {
+    const NEIGHBOURS: usize = 10;
+    if points.len() < 3 * NEIGHBOURS {
+        return None;
+    }
+    let stride = points.len().div_ceil(120);
+    let mut near: Vec<(f64, usize)> = Vec::with_capacity(points.len());
+    let mut found: Vec<(f64, Vector)> = Vec::new();
+    for p in points.iter().step_by(stride) {
+        near.clear();
+        near.extend(points.iter().enumerate().map(|(i, q)| ((p - q).norm_squared(), i)));
+        near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
+        let eigen = SymmetricEigen::new(scatter(near[..=NEIGHBOURS].iter().map(|n| points[n.1])));
+        let least = eigen.eigenvalues.imin();
+        let curvature = eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300);
+        found.push((curvature, eigen.eigenvectors.column(least).into()));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(found[..found.len().div_ceil(2)].iter().map(|f| f.1).collect())
+}
+
+/// The box of a cloud along the axes of a frame.
+#[derive(Clone, Copy)]
+struct Extents {
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Cosines between the axes and the viewing direction, zero along the support's normal.
+    hidden: [f64; 3],
+    /// Size across the viewing direction.
+    lateral: f64,
+}
+
+impl Extents {
+    fn of(points: &[Vector], frame: &Matrix3<f64>, terms: &Terms) -> Self {
+        let mut e = Self { low: [0.0; 3], high: [0.0; 3], hidden: [0.0; 3], lateral: 0.0 };
+        let mut buffer = Vec::with_capacity(points.len());
+        for k in 0..3 {
+            let axis: Vector = frame.column(k).into();
+            buffer.clear();
+            buffer.extend(points.iter().map(|p| p.dot(&axis)));
+            e.low[k] = quantile(&mut buffer, TAIL);
+            e.high[k] = quantile(&mut buffer, 1.0 - TAIL);
+        }
+        if let Some(viewpoint) = terms.viewpoint {
+            let view = (-viewpoint).normalize();
+            let (mut sum, mut weights) = (0.0, 1e-9);
+            for k in 0..3 {
+                e.hidden[k] = frame.column(k).dot(&view);
+                let across = 1.0 - e.hidden[k] * e.hidden[k];
+                sum += across * (e.high[k] - e.low[k]);
+                weights += across;
+            }
+            e.lateral = sum / weights;
+        }
+        if let Some(support) = terms.support.filter(|s| s.standing) {
+            for k in 0..3 {
+                let c = frame.column(k).dot(&support.normal);
+                if c.abs() > SAME_AXIS {
+                    // along the normal both ends are known: the plane and the seen top
+                    e.hidden[k] = 0.0;
+                    let ground = -support.offset / c;
+                    if c > 0.0 { e.low[k] = ground } else { e.high[k] = ground }
+                }
+            }
+        }
+        e
+    }
+
+    fn completed(mut self, depth: f64) -> Self {
+        for k in 0..3 {
+            let grow = depth * self.lateral * self.hidden[k];
+            if grow > 0.0 { self.high[k] += grow } else { self.low[k] += grow }
+        }
+        self
+    }
+
+    fn bodies(
+        &self,
+        points: &[Vector],
+        frame: &Matrix3<f64>,
+        family: Family,
+        out: &mut Vec<Parameters>,
+    ) {
+        let middle = Vector::from_fn(|k, _| 0.5 * (self.low[k] + self.high[k]));
+        let half: [f64; 3] =
+            std::array::from_fn(|k| (0.5 * (self.high[k] - self.low[k])).max(0.03));
+        let position = frame * middle;
+        for z in [2, 1, 0] {
+            let order = [(z + 1) % 3, (z + 2) % 3, z];
+            let axes = order.map(|k| half[k]);
+            let columns = order.map(|k| Vector::from(frame.column(k)));
+            let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&columns));
+            let start = Parameters {
+                family,
+                log_axes: axes.map(f64::ln),
+                ring: 2.0,
+                exponents: [EXPONENT; 2],
+                position,
+                rotation,
+            };
+            match family {
+                Family::Superellipsoid => {
+                    out.push(start);
+                    if axes[0].max(axes[1]) < 1.5 * axes[0].min(axes[1]) {
+                        out.push(turned(&start, axes));
+                    }
+                }
+                Family::Supertoroid => out.push(ringed(&start, axes, points)),
+            }
+        }
+    }
+}
+
+/// The start turned by 45 degrees about its z axis.
+fn turned(start: &Parameters, axes: [f64; 3]) -> Parameters {
+    let mean = 0.55 * (axes[0] + axes[1]);
+    let turn = Rotation3::new(Vector::z() * std::f64::consts::FRAC_PI_4);
+    Parameters {
+        log_axes: [mean.ln(), (0.97 * mean).ln(), axes[2].ln()],
+        rotation: start.rotation * turn,
+        ..*start
+    }
+}
+
+/// The toroid in the same box whose hole reaches to a low quantile of the planar radius.
+fn ringed(start: &Parameters, axes: [f64; 3], points: &[Vector]) -> Parameters {
+    let mut radii: Vec<f64> = points
+        .iter()
+        .map(|p| {
+            let q = start.rotation.inverse_transform_vector(&(p - start.position));
+            (q.x / axes[0]).hypot(q.y / axes[1])
+        })
+        .collect();
+    let hole = quantile(&mut radii, 2.0 * TAIL).clamp(0.1, 0.8);
+    let ring = ((1.0 + hole) / (1.0 - hole)).clamp(RINGS[0], RINGS[1]);
+    let scale = 1.0 / (1.0 + ring);
+    Parameters {
+        log_axes: [(axes[0] * scale).ln(), (axes[1] * scale).ln(), axes[2].ln()],
+        ring,
+        ..*start
+    }
+}
+
+/// The value below which a share `q` of the values lies; 0 for none.
+pub(super) fn quantile(values: &mut [f64], q: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let k = ((values.len() - 1) as f64 * q).round() as usize;
+    *values.select_nth_unstable_by(k, f64::total_cmp).1
+}

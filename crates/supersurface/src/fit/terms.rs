@@ -1,0 +1,199 @@
+//! What is known beside the points: the support from which the body rises, the space that rays prove
+//! empty, and a weak preference for bodies that are not needles.
+
+use super::kernel::distance;
+use super::parameters::{COUNT, EXPONENT, Family, Parameters, RING, Row};
+use crate::Vector;
+use crate::shape::{Superellipsoid, Supertoroid, SupportMap};
+
+/// The plane under the body, in normalised coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Support {
+    pub(super) normal: Vector,
+    pub(super) offset: f64,
+    /// True when the points come down to the plane: then the body touches it. Otherwise it only may not
+    /// reach below.
+    pub(super) standing: bool,
+    /// Least distance that counts, in normalised lengths.
+    pub(super) tolerance: f64,
+}
+
+/// Everything beside the points that speaks about the body.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Terms {
+    pub(super) support: Option<Support>,
+    pub(super) viewpoint: Option<Vector>,
+    /// Points seen beside or behind the object: nothing lies between the viewpoint and them.
+    pub(super) free: Vec<Vector>,
+}
+
+/// The normal equations that a set of weighted rows adds up to: `½ Σ w r²` and its derivatives.
+#[derive(Clone, Debug)]
+pub(super) struct Normal {
+    pub(super) matrix: [[f64; COUNT]; COUNT],
+    pub(super) gradient: Row,
+    pub(super) cost: f64,
+}
+
+impl Normal {
+    pub(super) fn zero() -> Self {
+        Self { matrix: [[0.0; COUNT]; COUNT], gradient: [0.0; COUNT], cost: 0.0 }
+    }
+
+    /// Adds one residual: only the lower triangle of the matrix is kept.
+    #[inline]
+    pub(super) fn add(&mut self, residual: f64, weight: f64, row: &Row) {
+        self.cost += 0.5 * weight * residual * residual;
+        for i in 0..COUNT {
+            let wi = weight * row[i];
+            self.gradient[i] += wi * residual;
+            for (entry, value) in self.matrix[i].iter_mut().zip(&row[..=i]) {
+                *entry += wi * value;
+            }
+        }
+    }
+}
+
+/// Standard deviation of the logarithm of an extent about the mean of the three: weak on purpose.
+const ASPECT_DEVIATION: f64 = 1.2;
+
+impl Terms {
+    /// Adds all terms; `points` is how many points they stand beside, `scale` the present noise.
+    pub(super) fn add(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
+        self.add_support(s, points, scale, to);
+        self.add_free(s, points, scale, to);
+        add_aspect(s, to);
+    }
+
+    fn add_support(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
+        let Some(support) = self.support else { return };
+        let (height, row) = lowest(s, &support);
+        if support.standing || height < 0.0 {
+            let sigma = scale.max(support.tolerance);
+            to.add(height, 0.2 * points as f64 / (sigma * sigma), &row);
+        }
+    }
+
+    fn add_free(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
+        let Some(viewpoint) = self.viewpoint else { return };
+        if self.free.is_empty() {
+            return;
+        }
+        let sigma = scale.max(0.02);
+        // a quarter of the points' say, however many rays there are
+        let weight = 0.25 * points as f64 / self.free.len() as f64 / (sigma * sigma);
+        for end in &self.free {
+            let Some(x) = deepest(s, &viewpoint, end) else { continue };
+            let mut row = [0.0; COUNT];
+            let d = distance::<true>(s, &x, &mut row);
+            if d < 0.0 && d.is_finite() {
+                to.add(d, weight, &row);
+            }
+        }
+    }
+}
+
+/// Height of the body's lowest point over the plane and its derivatives. By the envelope theorem the
+/// support point may be held while the parameters move.
+fn lowest(s: &Parameters, support: &Support) -> (f64, Row) {
+    let m = -(s.rotation.inverse_transform_vector(&support.normal));
+    let p = support_point(s, &m);
+    let height = support.normal.dot(&s.position) + support.offset - m.dot(&p);
+    let mut row = [0.0; COUNT];
+    let turn = m.cross(&p);
+    for i in 0..3 {
+        row[i] = -p[i] * m[i];
+        row[6 + i] = support.normal[i];
+        row[9 + i] = turn[i];
+    }
+    if s.family == Family::Supertoroid {
+        let ring = support_point(s, &Vector::new(m.x, m.y, 0.0));
+        row[RING] = -(ring.x * m.x + ring.y * m.y) / (s.ring + 1.0);
+    }
+    for i in 0..2 {
+        let mut step = [0.0; COUNT];
+        step[EXPONENT + i] = if s.exponents[i] > 1.0 { -1e-4 } else { 1e-4 };
+        let moved = support_point(&s.stepped(&step), &m);
+        row[EXPONENT + i] = -(m.dot(&moved) - m.dot(&p)) / step[EXPONENT + i];
+    }
+    (height, row)
+}
+
+fn support_point(s: &Parameters, direction: &Vector) -> Vector {
+    let axes = s.log_axes.map(f64::exp);
+    let point = match s.family {
+        Family::Superellipsoid => {
+            Superellipsoid::new(axes, s.exponents).map(|b| b.support_point(direction))
+        }
+        Family::Supertoroid => {
+            Supertoroid::new(axes, s.ring, s.exponents).map(|b| b.support_point(direction))
+        }
+    };
+    point.map(|p| p.coords).unwrap_or_default()
+}
+
+/// The point between `from` and `to` that lies deepest in the body (least signed distance), if any is
+/// inside. Found by sampling the stretch inside the body's bounding ellipsoid.
+fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
+    let half = Vector::from(s.half_extents());
+    let local = |x: &Vector| s.rotation.inverse_transform_vector(&(x - s.position));
+    let a = local(from).component_div(&half);
+    let b = local(to).component_div(&half) - a;
+    let squared = b.norm_squared();
+    if squared == 0.0 {
+        return None;
+    }
+    // a body of exponents >= 0.1 lies within √3 of its scaled centre
+    let middle = -a.dot(&b) / squared;
+    let nearest = (a + b * middle).norm_squared();
+    if nearest >= 3.0 {
+        return None;
+    }
+    let reach = ((3.0 - nearest) / squared).sqrt();
+    let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
+    if low >= high {
+        return None;
+    }
+    let at = |t: f64| from + (to - from) * t;
+    let mut unused = [0.0; COUNT];
+    let mut value = |t: f64| distance::<false>(s, &at(t), &mut unused);
+    const SAMPLES: usize = 8;
+    let step = (high - low) / SAMPLES as f64;
+    let (mut best, mut least) = (low, f64::INFINITY);
+    for i in 0..=SAMPLES {
+        let t = low + step * i as f64;
+        let d = value(t);
+        if d < least {
+            (best, least) = (t, d);
+        }
+    }
+    let mut width = 0.5 * step;
+    for _ in 0..3 {
+        for t in [best - width, best + width] {
+            let d = value(t.clamp(low, high));
+            if d < least {
+                (best, least) = (t.clamp(low, high), d);
+            }
+        }
+        width *= 0.5;
+    }
+    (least < 0.0).then(|| at(best))
+}
+
+/// `½ Σ (ln h_i - mean)² / σ²` over the three half extents.
+fn add_aspect(s: &Parameters, to: &mut Normal) {
+    let logs = s.half_extents().map(f64::ln);
+    let mean = logs.iter().sum::<f64>() / 3.0;
+    let by_ring = 1.0 / (1.0 + s.ring);
+    for i in 0..3 {
+        let mut row = [-1.0 / 3.0; COUNT];
+        row[i] += 1.0;
+        for value in row.iter_mut().skip(3) {
+            *value = 0.0;
+        }
+        if s.family == Family::Supertoroid {
+            row[RING] = (row[0] + row[1]) * by_ring;
+        }
+        to.add(logs[i] - mean, 1.0 / (ASPECT_DEVIATION * ASPECT_DEVIATION), &row);
+    }
+}
