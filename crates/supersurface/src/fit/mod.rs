@@ -25,6 +25,7 @@
 //! the evidence allows, not a measurement.
 
 mod evidence;
+mod free_space;
 mod kernel;
 mod noise;
 mod parameters;
@@ -34,6 +35,7 @@ mod start;
 mod switch;
 mod terms;
 
+pub use free_space::free_points;
 pub use parameters::Family;
 
 use crate::Point;

@@ -1,10 +1,22 @@
-//! How points scatter about a surface: a Student-t with 3 degrees of freedom for what belongs to it, and a
-//! constant density for what does not. Scale and outlier share are estimated, not given.
+//! How points scatter about a surface, and the constant density of those that do not belong to it. Scale and
+//! outlier share are estimated, not given.
+//!
+//! Seen from all around, noise is taken as Gaussian: a heavy tail would swallow outliers that the density
+//! should explain. On single views, whose noise acts along the rays and grows at edges, it is a Student-t
+//! with 3 degrees of freedom.
 
-/// The mixture `(1 - w) t3(d; scale) + w density`, in normalised lengths.
+/// The law of the inliers' distances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Law {
+    Gaussian,
+    StudentT,
+}
+
+/// The mixture `(1 - w) law(d; scale) + w density`, in normalised lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture {
-    /// Scale of the t distribution.
+    pub(super) law: Law,
+    /// Scale of the law.
     pub(super) scale: f64,
     /// Outlier share `w`.
     pub(super) outliers: f64,
@@ -14,21 +26,36 @@ pub(super) struct Mixture {
 
 /// Normalising constant of the t distribution with 3 degrees of freedom: 2/(π√3).
 const T3: f64 = 0.367_552_596_947_861_4;
+/// Normalising constant of the Gaussian: 1/√(2π).
+const GAUSS: f64 = 0.398_942_280_401_432_7;
 
 impl Mixture {
-    /// `(probability of belonging, factor of the t kernel)` at distance `d`.
+    /// `(density of the law, equivalent weight of d² over scale²)` at distance `d`.
+    #[inline]
+    fn law(&self, d: f64) -> (f64, f64) {
+        let t = d * d / (self.scale * self.scale);
+        match self.law {
+            Law::Gaussian => (GAUSS / self.scale * (-0.5 * t).exp(), 1.0),
+            Law::StudentT => {
+                let q = 1.0 / (1.0 + t / 3.0);
+                (T3 / self.scale * q * q, 4.0 / 3.0 * q)
+            }
+        }
+    }
+
+    /// `(probability of belonging, equivalent weight)` at distance `d`.
     #[inline]
     fn share(&self, d: f64) -> (f64, f64) {
-        let q = 1.0 / (1.0 + d * d / (3.0 * self.scale * self.scale));
-        let inlier = (1.0 - self.outliers) * T3 / self.scale * q * q;
-        (inlier / (inlier + self.outliers * self.density), q)
+        let (density, weight) = self.law(d);
+        let inlier = (1.0 - self.outliers) * density;
+        (inlier / (inlier + self.outliers * self.density), weight)
     }
 
     /// Weight of a squared distance in the equivalent least squares problem, in 1/length².
     #[inline]
     pub(super) fn weight(&self, d: f64) -> f64 {
-        let (inlier, q) = self.share(d);
-        inlier * q * (4.0 / 3.0) / (self.scale * self.scale)
+        let (inlier, weight) = self.share(d);
+        inlier * weight / (self.scale * self.scale)
     }
 
     /// Probability that a point at distance `d` belongs to the surface.
@@ -39,13 +66,8 @@ impl Mixture {
 
     /// Negative log-likelihood of all distances.
     pub(super) fn cost(&self, distances: &[f64]) -> f64 {
-        let c = (1.0 - self.outliers) * T3 / self.scale;
-        let u = self.outliers * self.density;
-        let k = 1.0 / (3.0 * self.scale * self.scale);
-        let term = |d: &f64| {
-            let q = 1.0 / (1.0 + k * d * d);
-            -(c * q * q + u).ln()
-        };
+        let uniform = self.outliers * self.density;
+        let term = |d: &f64| -((1.0 - self.outliers) * self.law(*d).0 + uniform).ln();
         distances.iter().map(term).sum()
     }
 
@@ -55,9 +77,9 @@ impl Mixture {
         for _ in 0..rounds {
             let (mut belonging, mut spread) = (1e-9, 0.0);
             for d in distances {
-                let (inlier, q) = self.share(*d);
+                let (inlier, weight) = self.share(*d);
                 belonging += inlier;
-                spread += inlier * q * (4.0 / 3.0) * d * d;
+                spread += inlier * weight * d * d;
             }
             self.scale = (spread / belonging).sqrt().min(1.0).max(floor);
             self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);

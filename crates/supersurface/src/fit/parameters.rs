@@ -53,6 +53,39 @@ impl Parameters {
         [a * outer, b * outer, c]
     }
 
+    /// Surface area, within about a tenth: between box, ellipsoid and octahedron by the mean exponent; for a
+    /// toroid the ring's length times the tube's girth.
+    pub(super) fn area(&self) -> f64 {
+        let [a, b, c] = self.log_axes.map(f64::exp);
+        match self.family {
+            Family::Superellipsoid => {
+                let [ab, bc, ca] = [a * b, b * c, c * a];
+                let box_area = 8.0 * (ab + bc + ca);
+                // Knud Thomsen's formula with exponent 1.6 rounded to the power mean of squares and sum
+                let squares = (ab * ab + bc * bc + ca * ca).sqrt();
+                let mean = 0.6 * (ab + bc + ca) / 3.0 + 0.4 * squares / 3f64.sqrt();
+                let ellipsoid = 4.0 * std::f64::consts::PI * mean;
+                let octahedron = 4.0 * squares;
+                let e = 0.5 * (self.exponents[0] + self.exponents[1]);
+                let between = |low: f64, high: f64, t: f64| low * (t * (high / low).ln()).exp();
+                if e <= 1.0 {
+                    between(box_area, ellipsoid, e)
+                } else {
+                    between(ellipsoid, octahedron, e - 1.0)
+                }
+            }
+            Family::Supertoroid => {
+                let girth = |u: f64, v: f64, e: f64| {
+                    let ellipse = std::f64::consts::TAU * (0.5 * (u * u + v * v)).sqrt();
+                    ellipse * (0.24 * (1.0 - e)).exp()
+                };
+                self.ring
+                    * girth(a, b, self.exponents[1])
+                    * girth(0.5 * (a + b), c, self.exponents[0])
+            }
+        }
+    }
+
     /// True for parameters that the family has.
     pub(super) fn is_active(&self, index: usize) -> bool {
         index != RING || self.family == Family::Supertoroid

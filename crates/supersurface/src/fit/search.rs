@@ -2,12 +2,12 @@
 
 use super::evidence::{shows_hole, toroid_margin};
 use super::kernel::distance;
-use super::noise::Mixture;
+use super::noise::{Law, Mixture};
 use super::parameters::{COUNT, Family, Parameters};
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::start::{quantile, starts};
 use super::switch::relatives;
-use super::terms::{Support, Terms};
+use super::terms::{RAY_DENSITY, Support, Terms};
 use super::{Fit, FitError, FitOptions, View};
 use crate::{Point, Vector};
 
@@ -19,8 +19,6 @@ const MIDDLE: usize = 240;
 const FINE: usize = 500;
 /// How many starts are refined.
 const KEPT: usize = 3;
-/// Outlier density a unit of normalised length: along a ray it is a constant.
-const OUTLIER_DENSITY: f64 = 0.25;
 /// Noise is never estimated below this share of the cloud's size.
 const NOISE_FLOOR: f64 = 1e-5;
 /// The support is known no better than this share of the cloud's size.
@@ -87,17 +85,26 @@ impl Normalised {
         });
         let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
         let free = view.free.iter().map(|p| inward(&p.coords)).collect();
-        let terms = Terms { support, viewpoint: outside, free };
+        let closed = outside.is_none().then(|| box_volume(&fine));
+        let terms = Terms { support, viewpoint: outside, free, closed };
         Ok(Self { centre, scale, coarse: sample(COARSE), middle: sample(MIDDLE), fine, terms })
     }
 
     /// The best body of one family.
     fn best(&self, family: Family) -> Hypothesis {
         let mut work = Workspace::default();
-        let candidates = starts(&self.middle, &self.terms, family);
+        let candidates = starts(&self.fine, &self.terms, family);
         let mut ranked: Vec<Hypothesis> = candidates
             .iter()
-            .map(|s| refine(&begin(s), &self.coarse, &self.terms, &coarse_schedule(s), &mut work))
+            .map(|s| {
+                refine(
+                    &begin(s, &self.terms),
+                    &self.coarse,
+                    &self.terms,
+                    &coarse_schedule(s),
+                    &mut work,
+                )
+            })
             .collect();
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         ranked.truncate(KEPT);
@@ -108,7 +115,7 @@ impl Normalised {
             .iter()
             .map(|h| finer(h, &mut work))
             .min_by(|a, b| a.cost.total_cmp(&b.cost))
-            .unwrap_or_else(|| begin(&ball(family)));
+            .unwrap_or_else(|| begin(&ball(family), &self.terms));
         for relative in relatives(&best.parameters, self.terms.viewpoint) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(0.05);
@@ -156,8 +163,9 @@ impl Normalised {
     }
 }
 
-fn begin(s: &Parameters) -> Hypothesis {
-    let mixture = Mixture { scale: 0.1, outliers: 0.1, density: OUTLIER_DENSITY };
+fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
+    let law = if terms.closed.is_some() { Law::Gaussian } else { Law::StudentT };
+    let mixture = Mixture { law, scale: 0.1, outliers: 0.1, density: RAY_DENSITY };
     Hypothesis { parameters: *s, mixture, cost: f64::MAX }
 }
 
@@ -188,6 +196,18 @@ fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
     let n = points.len();
     let taken = n.min(count);
     (0..taken).map(move |i| &points[i * n / taken])
+}
+
+/// Volume of the points' box along their principal axes, no side under a tenth of the unit.
+fn box_volume(points: &[Vector]) -> f64 {
+    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
+    let axes = nalgebra::SymmetricEigen::new(scatter).eigenvectors;
+    let side = |axis: Vector| {
+        let along = || points.iter().map(|p| p.dot(&axis));
+        let low = along().fold(f64::INFINITY, f64::min);
+        (along().fold(f64::NEG_INFINITY, f64::max) - low).max(0.1)
+    };
+    axes.column_iter().map(|axis| side(axis.into())).product()
 }
 
 /// True when the points have no second direction.

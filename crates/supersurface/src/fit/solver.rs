@@ -72,6 +72,7 @@ pub(super) fn refine(
     let mut failures = 0;
     work.evaluate(&s, points);
     work.accept();
+    mixture.density = terms.outlier_density(&s);
     mixture.update(&work.distances, schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
         let mut normal = Normal::zero();
@@ -100,6 +101,7 @@ pub(super) fn refine(
         }
         let scale = mixture.scale;
         annealed *= schedule.decay;
+        mixture.density = terms.outlier_density(&s);
         mixture.update(&work.distances, schedule.floor.max(annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
@@ -109,7 +111,7 @@ pub(super) fn refine(
         }
     }
     mixture.update(&work.distances, schedule.floor, 6);
-    let cost = total(&s, &mixture, &work.distances, terms);
+    let cost = total(&s, &mixture, &work.distances, terms) + terms.spread_cost(&s, points.len());
     Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
 }
 

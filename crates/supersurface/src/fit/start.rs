@@ -1,7 +1,7 @@
 //! Where to begin: bodies laid into frames that the structure of the cloud suggests.
 //!
 //! Frames come from the support (upright, turned to the least bounding rectangle), from the principal axes
-//! of all points, and from the scatter of local normals. Each gives three choices of the z axis and, where
+//! of all points and of those on flat and dense patches, and from the scatter of local normals. Each gives three choices of the z axis and, where
 //! two axes are alike, a start turned by 45 degrees. Semi-axes are half extents between low quantiles; the
 //! side that the camera does not see is completed along the viewing direction.
 
@@ -24,33 +24,51 @@ const SAME_AXIS: f64 = 0.985;
 pub(super) fn starts(points: &[Vector], terms: &Terms, family: Family) -> Vec<Parameters> {
     let mut out = Vec::new();
     for frame in frames(points, terms) {
-        let extents = Extents::of(points, &frame, terms);
+        let extents = Extents::of(&frame, terms);
         let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
         for depth in depths {
-            extents.completed(*depth).bodies(points, &frame, family, &mut out);
+            extents.completed(*depth).bodies(&frame, family, &mut out);
         }
     }
     out
 }
 
-/// Right-handed frames without near duplicates.
-fn frames(points: &[Vector], terms: &Terms) -> Vec<Matrix3<f64>> {
-    let mut out: Vec<Matrix3<f64>> = Vec::new();
-    let mut push = |frame: Matrix3<f64>| {
-        let known = out.iter().any(|other| {
-            (0..3).all(|i| (0..3).any(|j| frame.column(i).dot(&other.column(j)).abs() > SAME_AXIS))
-        });
+/// A right-handed frame and the points that a body in it should hold.
+struct Frame {
+    axes: Matrix3<f64>,
+    points: Vec<Vector>,
+}
+
+/// Frames without near duplicates.
+fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+    let mut out: Vec<Frame> = Vec::new();
+    let mut push = |axes: Matrix3<f64>, points: Vec<Vector>| {
+        // two frames with the same axes differ only where outliers stretch one of them
+        let known = terms.closed.is_none()
+            && out.iter().any(|other| {
+                (0..3).all(|i| {
+                    (0..3).any(|j| axes.column(i).dot(&other.axes.column(j)).abs() > SAME_AXIS)
+                })
+            });
         if !known {
-            out.push(frame);
+            out.push(Frame { axes, points });
         }
     };
     if let Some(support) = terms.support {
-        push(upright(points, &support.normal));
+        push(upright(points, &support.normal), points.to_vec());
     }
-    push(axes_of(&scatter(points.iter().copied())));
-    if let Some(normals) = planar_normals(points) {
-        let sum: Matrix3<f64> = normals.iter().map(|n| n * n.transpose()).sum();
-        push(axes_of(&sum));
+    push(axes_of(&scatter(points.iter().copied())), points.to_vec());
+    let mut patches = patches(points);
+    if !patches.is_empty() {
+        let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
+        patches.sort_by(|a, b| a.curvature.total_cmp(&b.curvature));
+        let flat = &patches[..patches.len().div_ceil(2)];
+        let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
+        push(axes_of(&normals), of(flat));
+        // flat and dense: what outliers are not
+        patches.sort_by(|a, b| a.looseness().total_cmp(&b.looseness()));
+        let firm = of(&patches[..patches.len().div_ceil(3)]);
+        push(axes_of(&scatter(firm.iter().copied())), firm);
     }
     out
 }
@@ -99,26 +117,46 @@ fn upright(points: &[Vector], normal: &Vector) -> Matrix3<f64> {
     Matrix3::from_columns(&[x, normal.cross(&x), *normal])
 }
 
-/// Normals of the flatter half of the neighbourhoods of up to 120 points; `None` for too few points.
-fn planar_normals(points: &[Vector]) -> Option<Vec<Vector>> {
+/// The neighbourhood of a point.
+struct Patch {
+    point: Vector,
+    normal: Vector,
+    /// Share of the least variance: 0 on a plane, 1/3 in a ball.
+    curvature: f64,
+    /// Squared distance of the farthest neighbour.
+    radius: f64,
+}
+
+impl Patch {
+    /// Small where points are dense and lie on a plane.
+    fn looseness(&self) -> f64 {
+        self.radius * (self.curvature + 0.02)
+    }
+}
+
+/// The neighbourhoods of up to 200 points; none for too few points.
+fn patches(points: &[Vector]) -> Vec<Patch> {
     const NEIGHBOURS: usize = 10;
     if points.len() < 3 * NEIGHBOURS {
-        return None;
+        return Vec::new();
     }
-    let stride = points.len().div_ceil(120);
+    let stride = points.len().div_ceil(200);
     let mut near: Vec<(f64, usize)> = Vec::with_capacity(points.len());
-    let mut found: Vec<(f64, Vector)> = Vec::new();
+    let mut found = Vec::new();
     for p in points.iter().step_by(stride) {
         near.clear();
         near.extend(points.iter().enumerate().map(|(i, q)| ((p - q).norm_squared(), i)));
         near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
         let eigen = SymmetricEigen::new(scatter(near[..=NEIGHBOURS].iter().map(|n| points[n.1])));
         let least = eigen.eigenvalues.imin();
-        let curvature = eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300);
-        found.push((curvature, eigen.eigenvectors.column(least).into()));
+        found.push(Patch {
+            point: *p,
+            normal: eigen.eigenvectors.column(least).into(),
+            curvature: eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300),
+            radius: near[NEIGHBOURS].0,
+        });
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Some(found[..found.len().div_ceil(2)].iter().map(|f| f.1).collect())
+    found
 }
 
 /// The box of a cloud along the axes of a frame.
@@ -133,13 +171,13 @@ struct Extents {
 }
 
 impl Extents {
-    fn of(points: &[Vector], frame: &Matrix3<f64>, terms: &Terms) -> Self {
+    fn of(frame: &Frame, terms: &Terms) -> Self {
         let mut e = Self { low: [0.0; 3], high: [0.0; 3], hidden: [0.0; 3], lateral: 0.0 };
-        let mut buffer = Vec::with_capacity(points.len());
+        let mut buffer = Vec::with_capacity(frame.points.len());
         for k in 0..3 {
-            let axis: Vector = frame.column(k).into();
+            let axis: Vector = frame.axes.column(k).into();
             buffer.clear();
-            buffer.extend(points.iter().map(|p| p.dot(&axis)));
+            buffer.extend(frame.points.iter().map(|p| p.dot(&axis)));
             e.low[k] = quantile(&mut buffer, TAIL);
             e.high[k] = quantile(&mut buffer, 1.0 - TAIL);
         }
@@ -147,7 +185,7 @@ impl Extents {
             let view = (-viewpoint).normalize();
             let (mut sum, mut weights) = (0.0, 1e-9);
             for k in 0..3 {
-                e.hidden[k] = frame.column(k).dot(&view);
+                e.hidden[k] = frame.axes.column(k).dot(&view);
                 let across = 1.0 - e.hidden[k] * e.hidden[k];
                 sum += across * (e.high[k] - e.low[k]);
                 weights += across;
@@ -156,7 +194,7 @@ impl Extents {
         }
         if let Some(support) = terms.support.filter(|s| s.standing) {
             for k in 0..3 {
-                let c = frame.column(k).dot(&support.normal);
+                let c = frame.axes.column(k).dot(&support.normal);
                 if c.abs() > SAME_AXIS {
                     // along the normal both ends are known: the plane and the seen top
                     e.hidden[k] = 0.0;
@@ -176,21 +214,15 @@ impl Extents {
         self
     }
 
-    fn bodies(
-        &self,
-        points: &[Vector],
-        frame: &Matrix3<f64>,
-        family: Family,
-        out: &mut Vec<Parameters>,
-    ) {
+    fn bodies(&self, frame: &Frame, family: Family, out: &mut Vec<Parameters>) {
         let middle = Vector::from_fn(|k, _| 0.5 * (self.low[k] + self.high[k]));
         let half: [f64; 3] =
             std::array::from_fn(|k| (0.5 * (self.high[k] - self.low[k])).max(0.03));
-        let position = frame * middle;
+        let position = frame.axes * middle;
         for z in [2, 1, 0] {
             let order = [(z + 1) % 3, (z + 2) % 3, z];
             let axes = order.map(|k| half[k]);
-            let columns = order.map(|k| Vector::from(frame.column(k)));
+            let columns = order.map(|k| Vector::from(frame.axes.column(k)));
             let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&columns));
             let start = Parameters {
                 family,
@@ -207,7 +239,7 @@ impl Extents {
                         out.push(turned(&start, axes));
                     }
                 }
-                Family::Supertoroid => out.push(ringed(&start, axes, points)),
+                Family::Supertoroid => out.push(ringed(&start, axes, &frame.points)),
             }
         }
     }

@@ -25,6 +25,9 @@ pub(super) struct Terms {
     pub(super) viewpoint: Option<Vector>,
     /// Points seen beside or behind the object: nothing lies between the viewpoint and them.
     pub(super) free: Vec<Vector>,
+    /// Volume of the cloud's box where the object was seen from all around. Then the points are a density on
+    /// the whole surface, and its area enters the likelihood; on half seen bodies it must not.
+    pub(super) closed: Option<f64>,
 }
 
 /// The normal equations that a set of weighted rows adds up to: `½ Σ w r²` and its derivatives.
@@ -57,7 +60,20 @@ impl Normal {
 /// Standard deviation of the logarithm of an extent about the mean of the three: weak on purpose.
 const ASPECT_DEVIATION: f64 = 1.2;
 
+/// Outlier density a unit of normalised length where only one side is seen: along a ray it is a constant.
+pub(super) const RAY_DENSITY: f64 = 0.25;
+
 impl Terms {
+    /// Density of outliers about a body, a unit of distance from its surface.
+    pub(super) fn outlier_density(&self, s: &Parameters) -> f64 {
+        self.closed.map_or(RAY_DENSITY, |volume| (s.area() / volume).clamp(1e-4, 1e3))
+    }
+
+    /// What the points' being spread over the whole surface adds to the cost of a body.
+    pub(super) fn spread_cost(&self, s: &Parameters, points: usize) -> f64 {
+        if self.closed.is_some() { points as f64 * s.area().ln() } else { 0.0 }
+    }
+
     /// Adds all terms; `points` is how many points they stand beside, `scale` the present noise.
     pub(super) fn add(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
         self.add_support(s, points, scale, to);

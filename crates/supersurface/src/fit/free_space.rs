@@ -1,0 +1,159 @@
+//! What a cloud proves empty around one of its objects.
+//!
+//! The sensor saw each point along a free line of sight, so every point that is not on the object says that
+//! the object does not cross the segment from the viewpoint to it. Missing readings say nothing. Only
+//! directions next to the object matter; those within two cells of its outline are left out, as depth is
+//! not to be trusted there.
+
+use crate::cloud::PointCloud;
+use crate::{Point, Vector};
+
+/// Most free points that are returned.
+const MOST: usize = 140;
+/// Cells on the longer side of the object's picture.
+const CELLS: f64 = 40.0;
+/// Cells around the outline in which nothing is trusted.
+const MARGIN: isize = 2;
+/// Cells around the object's picture that are searched.
+const BORDER: f64 = 14.0;
+
+/// Points of the cloud that were seen beside the object or behind it, for [`super::View::free`]; none when
+/// the viewpoint is not known or lies within the object.
+pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
+    let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
+    let mut mask = vec![false; picture.width * picture.height];
+    let mut taken = vec![false; picture.width * picture.height];
+    for i in object {
+        if let Some(cell) = cloud.points.get(*i as usize).and_then(|p| picture.cell(p)) {
+            mask[cell] = true;
+        }
+    }
+    let blocked = picture.dilated(&mask);
+    let mut found = Vec::new();
+    let mut see = |p: &Point| {
+        if let Some(cell) = picture.cell(p)
+            && !blocked[cell]
+            && !taken[cell]
+        {
+            taken[cell] = true;
+            found.push(*p);
+        }
+    };
+    match (cloud.grid, bounds(cloud, object)) {
+        (Some([width, _]), Some([u0, u1, v0, v1])) => {
+            for v in v0..=v1 {
+                for u in u0..=u1 {
+                    if let Some(p) = cloud.points.get(v * width + u) {
+                        see(p);
+                    }
+                }
+            }
+        }
+        _ => cloud.points.iter().for_each(see),
+    }
+    let kept = found.len().min(MOST);
+    (0..kept).map(|i| found[i * found.len() / kept]).collect()
+}
+
+/// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with half its size to each
+/// side.
+fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
+    let [width, height] = cloud.grid?;
+    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+    for i in object {
+        let at = [*i as usize % width, *i as usize / width];
+        for k in 0..2 {
+            low[k] = low[k].min(at[k]);
+            high[k] = high[k].max(at[k]);
+        }
+    }
+    let side = (high[0].checked_sub(low[0])?).max(high[1].checked_sub(low[1])?) / 2 + 4;
+    let top = |v: usize, size: usize| (v + side).min(size.saturating_sub(1));
+    Some([
+        low[0].saturating_sub(side),
+        top(high[0], width),
+        low[1].saturating_sub(side),
+        top(high[1], height),
+    ])
+}
+
+/// The object as the sensor sees it: a pinhole picture towards its middle.
+struct Picture {
+    viewpoint: Point,
+    forward: Vector,
+    right: Vector,
+    down: Vector,
+    corner: [f64; 2],
+    cell: f64,
+    width: usize,
+    height: usize,
+}
+
+impl Picture {
+    fn of(cloud: &PointCloud, object: &[u32]) -> Option<Self> {
+        let viewpoint = cloud.viewpoint?;
+        let rays = || {
+            let points = object.iter().filter_map(|i| cloud.points.get(*i as usize));
+            points.map(|p| p - viewpoint).filter(|r| r.iter().all(|v| v.is_finite()))
+        };
+        let forward = rays().sum::<Vector>().try_normalize(0.0)?;
+        let helper = if forward.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
+        let right = (helper - forward * forward.dot(&helper)).normalize();
+        let down = forward.cross(&right);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for r in rays() {
+            let z = r.dot(&forward);
+            if z <= 0.0 {
+                return None;
+            }
+            for (k, c) in [r.dot(&right) / z, r.dot(&down) / z].into_iter().enumerate() {
+                low[k] = low[k].min(c);
+                high[k] = high[k].max(c);
+            }
+        }
+        let cell = (high[0] - low[0]).max(high[1] - low[1]) / CELLS;
+        if !(cell > 0.0 && cell.is_finite()) {
+            return None;
+        }
+        let side = |k: usize| ((high[k] - low[k]) / cell + 2.0 * BORDER) as usize + 1;
+        let corner = [low[0] - BORDER * cell, low[1] - BORDER * cell];
+        Some(Self {
+            viewpoint,
+            forward,
+            right,
+            down,
+            corner,
+            cell,
+            width: side(0),
+            height: side(1),
+        })
+    }
+
+    #[inline]
+    fn cell(&self, p: &Point) -> Option<usize> {
+        let r = p - self.viewpoint;
+        let z = r.dot(&self.forward);
+        if z.is_nan() || z <= 0.0 {
+            return None;
+        }
+        let u = (r.dot(&self.right) / z - self.corner[0]) / self.cell;
+        let v = (r.dot(&self.down) / z - self.corner[1]) / self.cell;
+        let inside = u >= 0.0 && v >= 0.0 && u < self.width as f64 && v < self.height as f64;
+        inside.then(|| v as usize * self.width + u as usize)
+    }
+
+    /// The mask with `MARGIN` more cells on each side.
+    fn dilated(&self, mask: &[bool]) -> Vec<bool> {
+        let mut out = vec![false; mask.len()];
+        let (w, h) = (self.width as isize, self.height as isize);
+        for (i, _) in mask.iter().enumerate().filter(|(_, set)| **set) {
+            let (u, v) = (i as isize % w, i as isize / w);
+            for y in (v - MARGIN).max(0)..=(v + MARGIN).min(h - 1) {
+                for x in (u - MARGIN).max(0)..=(u + MARGIN).min(w - 1) {
+                    out[(y * w + x) as usize] = true;
+                }
+            }
+        }
+        out
+    }
+}
