@@ -50,5 +50,5 @@ pub(super) fn shows_hole(toroid: &Hypothesis, points: &[Vector]) -> bool {
         }
     }
     let n = points.len() as f64;
-    inliers as f64 > 0.6 * n && inner as f64 > 0.06 * n && (blocked as f64) < 0.03 * n
+    inliers as f64 > 0.6 * n && inner as f64 > 0.025 * n && (blocked as f64) < 0.03 * n
 }

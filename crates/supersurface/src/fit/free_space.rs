@@ -77,6 +77,27 @@ fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
     ])
 }
 
+/// Points far behind the outline of an object that nothing hides, for [`super::View::free`]: the body does
+/// not reach beyond what is seen of it. Cells that the object's own points enclose are left out: a hole in
+/// the readings is no hole in the object.
+pub fn outline_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
+    let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
+    let mut mask = vec![false; picture.width * picture.height];
+    let mut farthest = 0.0f64;
+    for p in object.iter().filter_map(|i| cloud.points.get(*i as usize)) {
+        if let Some(cell) = picture.cell(p) {
+            mask[cell] = true;
+            farthest = farthest.max((p - picture.viewpoint).dot(&picture.forward));
+        }
+    }
+    let blocked = picture.dilated(&mask);
+    let ring = picture.dilated(&blocked);
+    let outside = picture.outside(&blocked);
+    let cells: Vec<usize> = (0..ring.len()).filter(|c| ring[*c] && outside[*c]).collect();
+    let kept = cells.len().min(MOST);
+    (0..kept).map(|i| picture.point(cells[i * cells.len() / kept], 3.0 * farthest)).collect()
+}
+
 /// The object as the sensor sees it: a pinhole picture towards its middle.
 struct Picture {
     viewpoint: Point,
@@ -140,6 +161,37 @@ impl Picture {
         let v = (r.dot(&self.down) / z - self.corner[1]) / self.cell;
         let inside = u >= 0.0 && v >= 0.0 && u < self.width as f64 && v < self.height as f64;
         inside.then(|| v as usize * self.width + u as usize)
+    }
+
+    /// The point at `depth` along the viewing direction in the middle of a cell.
+    fn point(&self, cell: usize, depth: f64) -> Point {
+        let u = (cell % self.width) as f64 + 0.5;
+        let v = (cell / self.width) as f64 + 0.5;
+        let x = self.corner[0] + u * self.cell;
+        let y = self.corner[1] + v * self.cell;
+        self.viewpoint + (self.forward + self.right * x + self.down * y) * depth
+    }
+
+    /// The cells that are joined to the picture's border by cells that are not blocked.
+    fn outside(&self, blocked: &[bool]) -> Vec<bool> {
+        let (w, h) = (self.width, self.height);
+        let mut seen = vec![false; blocked.len()];
+        let mut open: Vec<usize> = (0..blocked.len())
+            .filter(|c| c % w == 0 || c % w == w - 1 || c / w == 0 || c / w == h - 1)
+            .collect();
+        while let Some(c) = open.pop() {
+            if blocked[c] || std::mem::replace(&mut seen[c], true) {
+                continue;
+            }
+            let (u, v) = (c % w, c / w);
+            open.extend([
+                if u > 0 { c - 1 } else { c },
+                if u + 1 < w { c + 1 } else { c },
+                if v > 0 { c - w } else { c },
+                if v + 1 < h { c + w } else { c },
+            ]);
+        }
+        seen
     }
 
     /// The mask with `MARGIN` more cells on each side.

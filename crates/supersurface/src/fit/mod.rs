@@ -35,7 +35,7 @@ mod start;
 mod switch;
 mod terms;
 
-pub use free_space::free_points;
+pub use free_space::{free_points, outline_points};
 pub use parameters::Family;
 
 use crate::Point;

@@ -64,6 +64,12 @@ impl Mixture {
         self.share(d).0
     }
 
+    /// By how much the cost rises when a point at distance `d` is an outlier after all.
+    pub(super) fn price_of_leaving(&self, d: f64) -> f64 {
+        let uniform = self.outliers * self.density;
+        ((1.0 - self.outliers) * self.law(d).0 / uniform).ln_1p()
+    }
+
     /// Negative log-likelihood of all distances.
     pub(super) fn cost(&self, distances: &[f64]) -> f64 {
         let uniform = self.outliers * self.density;

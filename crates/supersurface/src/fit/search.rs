@@ -17,6 +17,9 @@ const LEAST_POINTS: usize = 12;
 const COARSE: usize = 100;
 const MIDDLE: usize = 240;
 const FINE: usize = 500;
+/// Lines of sight that are looked at beside the middle and the fine set of points.
+const MIDDLE_RAYS: usize = 30;
+const FINE_RAYS: usize = 60;
 /// How many starts are refined.
 const KEPT: usize = 3;
 /// Noise is never estimated below this share of the cloud's size.
@@ -85,8 +88,10 @@ impl Normalised {
         });
         let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
         let free = view.free.iter().map(|p| inward(&p.coords)).collect();
-        let closed = outside.is_none().then(|| box_volume(&fine));
-        let terms = Terms { support, viewpoint: outside, free, closed };
+        let sides = box_sides(&fine);
+        let closed = outside.is_none().then(|| sides.iter().map(|s| s.max(0.1)).product());
+        let reach = 0.5 * sides.max();
+        let terms = Terms { support, viewpoint: outside, free, closed, reach };
         Ok(Self { centre, scale, coarse: sample(COARSE), middle: sample(MIDDLE), fine, terms })
     }
 
@@ -109,7 +114,13 @@ impl Normalised {
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         ranked.truncate(KEPT);
         let finer = |h: &Hypothesis, work: &mut Workspace| {
-            refine(h, &self.middle, &self.terms, &schedule(12, 2.0 * h.mixture.scale), work)
+            refine(
+                h,
+                &self.middle,
+                &self.terms,
+                &schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale),
+                work,
+            )
         };
         let mut best = ranked
             .iter()
@@ -119,12 +130,24 @@ impl Normalised {
         for relative in relatives(&best.parameters, self.terms.viewpoint) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(0.05);
-            let tried = refine(&start, &self.middle, &self.terms, &schedule(10, scale), &mut work);
+            let tried = refine(
+                &start,
+                &self.middle,
+                &self.terms,
+                &schedule(10, MIDDLE_RAYS, scale),
+                &mut work,
+            );
             if tried.cost < best.cost - 0.5 {
                 best = tried;
             }
         }
-        refine(&best, &self.fine, &self.terms, &schedule(15, best.mixture.scale), &mut work)
+        refine(
+            &best,
+            &self.fine,
+            &self.terms,
+            &schedule(15, FINE_RAYS, best.mixture.scale),
+            &mut work,
+        )
     }
 
     /// The better of the two families and its margin in nats.
@@ -173,11 +196,11 @@ fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
 /// swallowed by a wide kernel.
 fn coarse_schedule(s: &Parameters) -> Schedule {
     let size = s.half_extents().iter().sum::<f64>() / 3.0;
-    schedule(8, 0.12 * size)
+    schedule(8, 0, 0.12 * size)
 }
 
-fn schedule(rounds: usize, scale: f64) -> Schedule {
-    Schedule { rounds, scale, decay: 0.7, floor: NOISE_FLOOR, tolerance: 0.02 }
+fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
+    Schedule { rounds, rays, scale, decay: 0.7, floor: NOISE_FLOOR, tolerance: 0.02 }
 }
 
 fn ball(family: Family) -> Parameters {
@@ -198,16 +221,15 @@ fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
     (0..taken).map(move |i| &points[i * n / taken])
 }
 
-/// Volume of the points' box along their principal axes, no side under a tenth of the unit.
-fn box_volume(points: &[Vector]) -> f64 {
+/// Sides of the points' box along their principal axes.
+fn box_sides(points: &[Vector]) -> Vector {
     let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
     let axes = nalgebra::SymmetricEigen::new(scatter).eigenvectors;
-    let side = |axis: Vector| {
-        let along = || points.iter().map(|p| p.dot(&axis));
+    Vector::from_fn(|k, _| {
+        let along = || points.iter().map(|p| p.dot(&axes.column(k)));
         let low = along().fold(f64::INFINITY, f64::min);
-        (along().fold(f64::NEG_INFINITY, f64::max) - low).max(0.1)
-    };
-    axes.column_iter().map(|axis| side(axis.into())).product()
+        along().fold(f64::NEG_INFINITY, f64::max) - low
+    })
 }
 
 /// True when the points have no second direction.

@@ -3,7 +3,7 @@
 use super::kernel::distance;
 use super::noise::Mixture;
 use super::parameters::{COUNT, Parameters, Row};
-use super::terms::{Normal, Terms};
+use super::terms::{Beside, Normal, Terms};
 use crate::Vector;
 
 /// A body with its noise and its cost (negative log-likelihood of the points plus all other terms).
@@ -24,6 +24,8 @@ pub(super) struct Schedule {
     pub(super) decay: f64,
     /// Scale below which noise is never estimated.
     pub(super) floor: f64,
+    /// Lines of sight that are looked at.
+    pub(super) rays: usize,
     /// A round that gains less than this many nats ends the search.
     pub(super) tolerance: f64,
 }
@@ -35,6 +37,7 @@ pub(super) struct Workspace {
     trial: Vec<f64>,
     rows: Vec<Row>,
     trial_rows: Vec<Row>,
+    intrusions: Vec<Vector>,
 }
 
 /// What stands in for a distance that is not a number: far away.
@@ -48,6 +51,15 @@ impl Workspace {
         for ((x, d), row) in points.iter().zip(&mut self.trial).zip(&mut self.trial_rows) {
             let value = distance::<true>(s, x, row);
             *d = if value.is_finite() { value } else { FAR };
+        }
+    }
+
+    fn beside(&self, mixture: &Mixture, schedule: &Schedule) -> Beside<'_> {
+        Beside {
+            points: self.distances.len(),
+            scale: mixture.scale,
+            rays: schedule.rays,
+            intrusions: &self.intrusions,
         }
     }
 
@@ -75,12 +87,13 @@ pub(super) fn refine(
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.distances, schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
+        terms.intrusions(&s, schedule.rays, &mut work.intrusions);
         let mut normal = Normal::zero();
         for (d, row) in work.distances.iter().zip(&work.rows) {
             normal.add(*d, mixture.weight(*d), row);
         }
         normal.cost = mixture.cost(&work.distances);
-        terms.add(&s, points.len(), mixture.scale, &mut normal);
+        terms.add(&s, &work.beside(&mixture, schedule), &mut normal);
         let before = normal.cost;
         let mut gain = None;
         for _ in 0..4 {
@@ -90,7 +103,9 @@ pub(super) fn refine(
             };
             let next = s.stepped(&step);
             work.evaluate(&next, points);
-            let after = total(&next, &mixture, &work.trial, terms);
+            let mut after = Normal::zero();
+            terms.add(&next, &work.beside(&mixture, schedule), &mut after);
+            let after = after.cost + mixture.cost(&work.trial);
             if after < before {
                 (s, gain) = (next, Some(before - after));
                 work.accept();
@@ -111,14 +126,14 @@ pub(super) fn refine(
         }
     }
     mixture.update(&work.distances, schedule.floor, 6);
-    let cost = total(&s, &mixture, &work.distances, terms) + terms.spread_cost(&s, points.len());
-    Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
-}
-
-fn total(s: &Parameters, mixture: &Mixture, distances: &[f64], terms: &Terms) -> f64 {
+    terms.intrusions(&s, schedule.rays, &mut work.intrusions);
     let mut extra = Normal::zero();
-    terms.add(s, distances.len(), mixture.scale, &mut extra);
-    mixture.cost(distances) + extra.cost
+    terms.add(&s, &work.beside(&mixture, schedule), &mut extra);
+    let cost = mixture.cost(&work.distances)
+        + extra.cost
+        + terms.spread_cost(&s, points.len())
+        + terms.facing_cost(&s, &mixture, points);
+    Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
 }
 
 /// The damped step `-(H + λ diag H)⁻¹ b` over the parameters that may move; `None` when the matrix is not

@@ -2,6 +2,7 @@
 //! empty, and a weak preference for bodies that are not needles.
 
 use super::kernel::distance;
+use super::noise::Mixture;
 use super::parameters::{COUNT, EXPONENT, Family, Parameters, RING, Row};
 use crate::Vector;
 use crate::shape::{Superellipsoid, Supertoroid, SupportMap};
@@ -28,6 +29,9 @@ pub(super) struct Terms {
     /// Volume of the cloud's box where the object was seen from all around. Then the points are a density on
     /// the whole surface, and its area enters the likelihood; on half seen bodies it must not.
     pub(super) closed: Option<f64>,
+    /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much: a
+    /// side that no point shows is no reason to be larger than all that is seen.
+    pub(super) reach: f64,
 }
 
 /// The normal equations that a set of weighted rows adds up to: `½ Σ w r²` and its derivatives.
@@ -60,6 +64,22 @@ impl Normal {
 /// Standard deviation of the logarithm of an extent about the mean of the three: weak on purpose.
 const ASPECT_DEVIATION: f64 = 1.2;
 
+/// What the terms stand beside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside<'a> {
+    /// Number of points.
+    pub(super) points: usize,
+    /// Present scale of the noise.
+    pub(super) scale: f64,
+    /// Number of lines of sight that were looked at.
+    pub(super) rays: usize,
+    /// Where they lie deepest in the body, held while the body takes a step.
+    pub(super) intrusions: &'a [Vector],
+}
+
+/// Weight of the reach against the points: a body twice the reach costs each point half a nat.
+const REACH_WEIGHT: f64 = 2.0;
+
 /// Outlier density a unit of normalised length where only one side is seen: along a ray it is a constant.
 pub(super) const RAY_DENSITY: f64 = 0.25;
 
@@ -74,11 +94,48 @@ impl Terms {
         if self.closed.is_some() { points as f64 * s.area().ln() } else { 0.0 }
     }
 
-    /// Adds all terms; `points` is how many points they stand beside, `scale` the present noise.
-    pub(super) fn add(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
-        self.add_support(s, points, scale, to);
-        self.add_free(s, points, scale, to);
+    /// What the points on sides that face away from the sensor cost: it cannot have seen them there, so they
+    /// are outliers.
+    pub(super) fn facing_cost(&self, s: &Parameters, mixture: &Mixture, points: &[Vector]) -> f64 {
+        let Some(viewpoint) = self.viewpoint else { return 0.0 };
+        let mut row = [0.0; COUNT];
+        let mut cost = 0.0;
+        for x in points {
+            let d = distance::<true>(s, x, &mut row);
+            // moving the body by its normal changes the distance by -1: the row of the position is -n
+            let normal = -Vector::new(row[6], row[7], row[8]);
+            let ray = x - viewpoint;
+            if d.is_finite() && normal.dot(&ray) > 0.1 * normal.norm() * ray.norm() {
+                cost += mixture.price_of_leaving(d);
+            }
+        }
+        cost
+    }
+
+    /// Adds all terms.
+    pub(super) fn add(&self, s: &Parameters, beside: &Beside<'_>, to: &mut Normal) {
+        self.add_support(s, beside.points, beside.scale, to);
+        add_intrusions(s, beside, to);
+        self.add_reach(s, beside.points, to);
         add_aspect(s, to);
+    }
+
+    /// `½ w ln²(h_i / reach)` for every half extent above the reach.
+    fn add_reach(&self, s: &Parameters, points: usize, to: &mut Normal) {
+        if self.closed.is_some() {
+            return;
+        }
+        for (i, half) in s.half_extents().iter().enumerate() {
+            let excess = (half / self.reach).ln();
+            if excess > 0.0 {
+                let mut row = [0.0; COUNT];
+                row[i] = 1.0;
+                if s.family == Family::Supertoroid && i < 2 {
+                    row[RING] = 1.0 / (1.0 + s.ring);
+                }
+                to.add(excess, REACH_WEIGHT * points as f64, &row);
+            }
+        }
     }
 
     fn add_support(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
@@ -90,21 +147,26 @@ impl Terms {
         }
     }
 
-    fn add_free(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
+    /// The points at which free lines of sight lie deepest in the body, into `found`.
+    pub(super) fn intrusions(&self, s: &Parameters, rays: usize, found: &mut Vec<Vector>) {
+        found.clear();
         let Some(viewpoint) = self.viewpoint else { return };
-        if self.free.is_empty() {
-            return;
-        }
-        let sigma = scale.max(0.02);
-        // a quarter of the points' say, however many rays there are
-        let weight = 0.25 * points as f64 / self.free.len() as f64 / (sigma * sigma);
-        for end in &self.free {
-            let Some(x) = deepest(s, &viewpoint, end) else { continue };
-            let mut row = [0.0; COUNT];
-            let d = distance::<true>(s, &x, &mut row);
-            if d < 0.0 && d.is_finite() {
-                to.add(d, weight, &row);
-            }
+        let taken = self.free.len().min(rays);
+        let ends = (0..taken).map(|i| &self.free[i * self.free.len() / taken]);
+        found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
+    }
+}
+
+/// Adds the depths of the intrusions; `rays` is how many lines of sight were looked at.
+fn add_intrusions(s: &Parameters, at: &Beside<'_>, to: &mut Normal) {
+    let sigma = at.scale.max(0.02);
+    // a quarter of the points' say, however many rays there are
+    let weight = 0.25 * at.points as f64 / at.rays.max(1) as f64 / (sigma * sigma);
+    for x in at.intrusions {
+        let mut row = [0.0; COUNT];
+        let d = distance::<true>(s, x, &mut row);
+        if d < 0.0 && d.is_finite() {
+            to.add(d, weight, &row);
         }
     }
 }
@@ -173,7 +235,7 @@ fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
     let at = |t: f64| from + (to - from) * t;
     let mut unused = [0.0; COUNT];
     let mut value = |t: f64| distance::<false>(s, &at(t), &mut unused);
-    const SAMPLES: usize = 8;
+    const SAMPLES: usize = 6;
     let step = (high - low) / SAMPLES as f64;
     let (mut best, mut least) = (low, f64::INFINITY);
     for i in 0..=SAMPLES {
@@ -184,7 +246,7 @@ fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
         }
     }
     let mut width = 0.5 * step;
-    for _ in 0..3 {
+    for _ in 0..2 {
         for t in [best - width, best + width] {
             let d = value(t.clamp(low, high));
             if d < least {
