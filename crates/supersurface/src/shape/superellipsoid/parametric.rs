@@ -23,24 +23,19 @@ impl Parametric for Superellipsoid {
 }
 
 /// `ν = (cos^(2-ε1) η cos^(2-ε2) ω / a1, cos^(2-ε1) η sin^(2-ε2) ω / a2, sin^(2-ε1) η / a3)`,
-/// normalised. Superellipsoid and supertoroid share it. `None` for exponents from 2, where seams
-/// are edges.
+/// normalised. Superellipsoid and supertoroid share it. `None` on the seams and poles that exponents from 2
+/// turn into edges and cusps.
 pub(crate) fn angular_normal(
     [a1, a2, a3]: [f64; 3],
     [e1, e2]: [f64; 2],
     eta: f64,
     omega: f64,
 ) -> Option<Direction> {
-    if e1 >= 2.0 || e2 >= 2.0 {
-        return None;
-    }
     let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
-    let c = signed_power(ce, 2.0 - e1);
-    let n = Vector::new(
-        c * signed_power(co, 2.0 - e2) / a1,
-        c * signed_power(so, 2.0 - e2) / a2,
-        signed_power(se, 2.0 - e1) / a3,
-    );
+    let smooth = |b: f64, e: f64| (b != 0.0 || e < 2.0).then(|| signed_power(b, 2.0 - e));
+    let (c, s) = (smooth(ce, e1)?, smooth(se, e1)?);
+    let (x, y) = if c == 0.0 { (0.0, 0.0) } else { (smooth(co, e2)?, smooth(so, e2)?) };
+    let n = Vector::new(c * x / a1, c * y / a2, s / a3);
     // scaled first: 1/a overflows nothing but the sum of squares of 1e200 would
     let largest = n.amax();
     (largest > 0.0 && largest.is_finite()).then(|| Direction::new_normalize(n / largest))
