@@ -90,7 +90,7 @@ impl Normalised {
         let free = view.free.iter().map(|p| inward(&p.coords)).collect();
         let sides = box_sides(&fine);
         let closed = outside.is_none().then(|| sides.iter().map(|s| s.max(0.1)).product());
-        let reach = 0.5 * sides.max();
+        let reach = 0.55 * sides.max();
         let terms = Terms { support, viewpoint: outside, free, closed, reach };
         Ok(Self { centre, scale, coarse: sample(COARSE), middle: sample(MIDDLE), fine, terms })
     }

@@ -105,7 +105,7 @@ impl Terms {
             // moving the body by its normal changes the distance by -1: the row of the position is -n
             let normal = -Vector::new(row[6], row[7], row[8]);
             let ray = x - viewpoint;
-            if d.is_finite() && normal.dot(&ray) > 0.1 * normal.norm() * ray.norm() {
+            if d.is_finite() && normal.dot(&ray) > 0.4 * normal.norm() * ray.norm() {
                 cost += mixture.price_of_leaving(d);
             }
         }
