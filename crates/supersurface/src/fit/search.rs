@@ -13,15 +13,19 @@ use crate::{Point, Vector};
 
 /// Fewer points than this determine no surface.
 const LEAST_POINTS: usize = 12;
-/// Points that rank the starts, that refine the best of them, and that decide.
+/// Points that sort out the starts, that rank them, that refine the best of them, and that decide.
+const SKETCH: usize = 60;
 const COARSE: usize = 100;
-const MIDDLE: usize = 240;
-const FINE: usize = 500;
+const MIDDLE: usize = 180;
+const FINE: usize = 400;
 /// Lines of sight that are looked at beside the middle and the fine set of points.
-const MIDDLE_RAYS: usize = 30;
-const FINE_RAYS: usize = 60;
-/// How many starts are refined.
+const MIDDLE_RAYS: usize = 24;
+const FINE_RAYS: usize = 48;
+/// How many starts are ranked, and how many of these are refined.
+const SHORTLIST: usize = 9;
 const KEPT: usize = 3;
+/// Share of points deep inside a convex body from which it may be hollow.
+const HOLLOW: f64 = 0.01;
 /// Noise is never estimated below this share of the cloud's size.
 const NOISE_FLOOR: f64 = 1e-5;
 /// The support is known no better than this share of the cloud's size.
@@ -40,6 +44,7 @@ pub(super) fn search(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitEr
 struct Normalised {
     centre: Vector,
     scale: f64,
+    sketch: Vec<Vector>,
     coarse: Vec<Vector>,
     middle: Vec<Vector>,
     fine: Vec<Vector>,
@@ -92,27 +97,36 @@ impl Normalised {
         let closed = outside.is_none().then(|| sides.iter().map(|s| s.max(0.1)).product());
         let reach = 0.55 * sides.max();
         let terms = Terms { support, viewpoint: outside, free, closed, reach };
-        Ok(Self { centre, scale, coarse: sample(COARSE), middle: sample(MIDDLE), fine, terms })
+        Ok(Self {
+            centre,
+            scale,
+            sketch: sample(SKETCH),
+            coarse: sample(COARSE),
+            middle: sample(MIDDLE),
+            fine,
+            terms,
+        })
     }
 
     /// The best body of one family.
     fn best(&self, family: Family) -> Hypothesis {
         let mut work = Workspace::default();
-        let candidates = starts(&self.fine, &self.terms, family);
-        let mut ranked: Vec<Hypothesis> = candidates
-            .iter()
-            .map(|s| {
-                refine(
-                    &begin(s, &self.terms),
-                    &self.coarse,
-                    &self.terms,
-                    &coarse_schedule(s),
-                    &mut work,
-                )
-            })
-            .collect();
-        ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        ranked.truncate(KEPT);
+        // most starts are hopeless after a few rounds on few points
+        let mut ranked: Vec<Hypothesis> =
+            starts(&self.fine, &self.terms, family).iter().map(|s| begin(s, &self.terms)).collect();
+        // among outliers a sketch misleads: there all starts are ranked at once
+        let rounds: &[(&[Vector], usize, usize)] = if self.terms.closed.is_some() {
+            &[(&self.coarse, 8, KEPT)]
+        } else {
+            &[(&self.sketch, 4, SHORTLIST), (&self.coarse, 6, KEPT)]
+        };
+        for &(points, rounds, kept) in rounds {
+            for h in &mut ranked {
+                *h = refine(h, points, &self.terms, &coarse_schedule(h, rounds), &mut work);
+            }
+            ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            ranked.truncate(kept);
+        }
         let finer = |h: &Hypothesis, work: &mut Workspace| {
             refine(
                 h,
@@ -134,7 +148,7 @@ impl Normalised {
                 &start,
                 &self.middle,
                 &self.terms,
-                &schedule(10, MIDDLE_RAYS, scale),
+                &schedule(7, MIDDLE_RAYS, scale),
                 &mut work,
             );
             if tried.cost < best.cost - 0.5 {
@@ -153,6 +167,9 @@ impl Normalised {
     /// The better of the two families and its margin in nats.
     fn choose(&self) -> (Hypothesis, f64) {
         let ellipsoid = self.best(Family::Superellipsoid);
+        if !self.may_be_hollow(&ellipsoid) {
+            return (ellipsoid, 0.0);
+        }
         let toroid = self.best(Family::Supertoroid);
         let margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
         if margin > 0.0 && shows_hole(&toroid, &self.fine) {
@@ -160,6 +177,18 @@ impl Normalised {
         } else {
             (ellipsoid, -margin)
         }
+    }
+
+    /// A hole shows itself by points or by free lines of sight that lie deep in the convex body.
+    fn may_be_hollow(&self, h: &Hypothesis) -> bool {
+        let deep = -(3.0 * h.mixture.scale).max(0.04);
+        let mut row = [0.0; COUNT];
+        let mut is_deep = |x: &Vector| distance::<false>(&h.parameters, x, &mut row) < deep;
+        let within = self.fine.iter().filter(|x| is_deep(x)).count();
+        let mut intrusions = Vec::new();
+        self.terms.intrusions(&h.parameters, FINE_RAYS, &mut intrusions);
+        let through = intrusions.iter().filter(|x| is_deep(x)).count();
+        within as f64 > HOLLOW * self.fine.len() as f64 || through > 0
     }
 
     fn judge(&self, view: &View<'_>, h: &Hypothesis, margin: f64) -> Result<Fit, FitError> {
@@ -193,10 +222,11 @@ fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
 }
 
 /// The scale of the first rounds is tied to the start's own body, so that a small body among outliers is not
-/// swallowed by a wide kernel.
-fn coarse_schedule(s: &Parameters) -> Schedule {
-    let size = s.half_extents().iter().sum::<f64>() / 3.0;
-    schedule(8, 0, 0.12 * size)
+/// swallowed by a wide kernel; a body that has settled starts from its noise.
+fn coarse_schedule(h: &Hypothesis, rounds: usize) -> Schedule {
+    let size = h.parameters.half_extents().iter().sum::<f64>() / 3.0;
+    let scale = if h.cost < f64::MAX { h.mixture.scale.min(0.04 * size) } else { 0.12 * size };
+    schedule(rounds, 0, scale)
 }
 
 fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {

@@ -1,0 +1,58 @@
+//! What is going on, on standard error: a spinner on a terminal, nothing in a pipe.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use supersurface::pipeline::Stage;
+
+/// Announces stages and keeps their times.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    began: Instant,
+    running: Option<&'static str>,
+    times: Vec<(&'static str, f64)>,
+}
+
+impl Progress {
+    /// Quiet when asked to be, and always when standard error is not a terminal.
+    pub(crate) fn new(quiet: bool) -> Self {
+        let bar = if quiet {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
+        };
+        bar.set_style(ProgressStyle::default_spinner());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { bar, began: Instant::now(), running: None, times: Vec::new() }
+    }
+
+    /// A stage begins; the one before has ended.
+    pub(crate) fn begin(&mut self, name: &'static str, message: String) {
+        self.end();
+        self.running = Some(name);
+        self.began = Instant::now();
+        self.bar.set_message(message);
+    }
+
+    /// The same for a stage of the pipeline.
+    pub(crate) fn stage(&mut self, stage: Stage) {
+        match stage {
+            Stage::Segment => self.begin("segment", "finding the table and the objects".into()),
+            Stage::Fit(n) => self.begin("fit", format!("fitting {n} objects")),
+            Stage::Grasp(n) => self.begin("grasp", format!("planning grasps for {n} objects")),
+        }
+    }
+
+    fn end(&mut self) {
+        if let Some(name) = self.running.take() {
+            self.times.push((name, self.began.elapsed().as_secs_f64()));
+        }
+    }
+
+    /// Ends the last stage and gives the seconds of each.
+    pub(crate) fn finish(&mut self) -> &[(&'static str, f64)] {
+        self.end();
+        self.bar.finish_and_clear();
+        &self.times
+    }
+}

@@ -1,0 +1,130 @@
+//! The report as a table for people.
+
+use std::fmt::Write;
+
+use supersurface::grasp::Grasp;
+use supersurface::pipeline::{Object, Report};
+use supersurface::segment::Segmentation;
+
+/// The whole text: the support, a row an object, its best `most_grasps` grasps, and what was left out.
+pub(crate) fn table(report: &Report, most_grasps: usize) -> String {
+    let mut out = String::new();
+    let s = &report.segmentation;
+    support(&mut out, s);
+    if report.objects.is_empty() {
+        out.push_str("no objects on it\n");
+    } else {
+        let _ = writeln!(
+            out,
+            "\n{:>3}  {:<14}  {:<17}  {:<11}  {:<23}  {:>8}  {:>7}",
+            "#", "what", "size mm", "exponents", "centre m", "residual", "inliers"
+        );
+    }
+    for (i, object) in report.objects.iter().enumerate() {
+        row(&mut out, i + 1, object);
+        grasps(&mut out, object, most_grasps);
+    }
+    dropped(&mut out, s);
+    out
+}
+
+fn support(out: &mut String, s: &Segmentation) {
+    if let Some(plane) = s.support {
+        let n = plane.normal();
+        let _ = writeln!(
+            out,
+            "table: normal {:.3} {:.3} {:.3}, offset {:.3} m, scatter {:.1} mm",
+            n.x,
+            n.y,
+            n.z,
+            plane.offset(),
+            1e3 * s.support_noise
+        );
+    } else {
+        out.push_str("no table: the objects were given\n");
+    }
+}
+
+fn row(out: &mut String, id: usize, object: &Object) {
+    let fit = match &object.fit {
+        Ok(fit) => fit,
+        Err(e) => {
+            let _ = writeln!(out, "{id:>3}  no surface: {e}");
+            return;
+        }
+    };
+    let shape = fit.surface.shape();
+    let [x, y, z] = shape.half_extents().map(|h| 2e3 * h);
+    let [e1, e2] = shape.exponents();
+    let c = fit.surface.pose().translation.vector;
+    let exponents = match shape.ring_ratio() {
+        Some(a4) => format!("{e1:.2} {e2:.2} /{a4:.1}"),
+        None => format!("{e1:.2} {e2:.2}"),
+    };
+    let _ = writeln!(
+        out,
+        "{id:>3}  {:<14}  {:<17}  {:<11}  {:<23}  {:>5.1} mm  {:>5.0} %",
+        shape.name(),
+        format!("{x:.0} x {y:.0} x {z:.0}"),
+        exponents,
+        format!("{:.3} {:.3} {:.3}", c.x, c.y, c.z),
+        1e3 * fit.residual,
+        1e2 * fit.inlier_share(),
+    );
+}
+
+fn grasps(out: &mut String, object: &Object, most: usize) {
+    match &object.grasps {
+        Err(refusal) => {
+            let _ = writeln!(out, "       not held: {refusal}");
+        }
+        Ok(found) => {
+            for (rank, g) in found.iter().take(most).enumerate() {
+                grasp(out, rank + 1, g);
+            }
+            if found.len() > most {
+                let _ = writeln!(out, "       and {} more", found.len() - most);
+            }
+        }
+    }
+}
+
+fn grasp(out: &mut String, rank: usize, g: &Grasp) {
+    let t = g.pose.translation.vector;
+    let q = g.pose.rotation;
+    let width = match (g.opening > 0.0, g.inside) {
+        (false, _) => "suction".to_owned(),
+        (true, false) => format!("opening {:.0} mm", 1e3 * g.opening),
+        (true, true) => format!("inside, {:.0} to {:.0} mm", 1e3 * g.opening, 1e3 * g.contact_width),
+    };
+    let _ = writeln!(
+        out,
+        "       {rank}. score {:.2}  {:<22}  at {:.3} {:.3} {:.3}  wxyz {:.3} {:.3} {:.3} {:.3}  ({})",
+        g.score, width, t.x, t.y, t.z, q.w, q.i, q.j, q.k, g.source
+    );
+    if rank == 1 {
+        let terms: Vec<String> = g.terms.iter().map(|(n, v)| format!("{n} {v:.2}")).collect();
+        let _ = writeln!(out, "          {}", terms.join("  "));
+    }
+}
+
+fn dropped(out: &mut String, s: &Segmentation) {
+    if s.dropped.is_empty() {
+        return;
+    }
+    let mut reasons: Vec<(String, usize, usize)> = Vec::new();
+    for d in &s.dropped {
+        let reason = d.reason.to_string();
+        match reasons.iter_mut().find(|(r, ..)| *r == reason) {
+            Some((_, pieces, points)) => {
+                *pieces += 1;
+                *points += d.points.len();
+            }
+            None => reasons.push((reason, 1, d.points.len())),
+        }
+    }
+    out.push_str("\nleft out:\n");
+    for (reason, pieces, points) in reasons {
+        let _ = writeln!(out, "  {pieces} pieces, {points} points: {reason}");
+    }
+}
