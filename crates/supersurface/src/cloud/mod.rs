@@ -1,5 +1,14 @@
-//! Floor 6: point clouds.
+//! Floor 6: point clouds, neighbours in them, and the unit mix-up.
 
+mod normals;
 mod point_cloud;
+mod sets;
+mod units;
+mod voxels;
 
+pub(crate) use normals::smallest_axis;
+pub use normals::normals;
 pub use point_cloud::PointCloud;
+pub(crate) use sets::Sets;
+pub use units::{UnitHint, unit_hint};
+pub use voxels::VoxelGrid;

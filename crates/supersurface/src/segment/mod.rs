@@ -1,5 +1,26 @@
 //! Floor 7: from a cloud to the table plane and the objects on it.
+//!
+//! [`segment`] finds the support (a table, or the floor that things stand on), takes the points above
+//! it and parts them into objects; [`segment_whole`] takes a cloud that is one object already, and
+//! [`segment_masks`] one whose objects are labelled. What was left out is listed with the reason.
+//!
+//! Objects that touch may come out as one, and one object may come out as two when something in front
+//! of it hides its middle.
 
+mod clusters;
+mod footprint;
+mod masks;
+mod objects;
+mod planes;
+mod sight;
+mod table;
+
+pub use masks::{segment_masks, segment_whole};
+pub use table::NoTable;
+
+use crate::cloud::PointCloud;
+use crate::numeric::random::Stream;
+use crate::segment::clusters::Class;
 use crate::shape::Plane;
 
 /// What a cloud is made of. Indices into the cloud's points; never copies.
@@ -17,6 +38,28 @@ pub struct Segmentation {
     pub dropped: Vec<Dropped>,
 }
 
+impl Segmentation {
+    /// What each of a cloud's points is: k for object number k (from 1), -1 for a piece that was
+    /// dropped, 0 for the rest, support and background. `n` is the number of points.
+    pub fn labels(&self, n: usize) -> Vec<i32> {
+        let mut labels = vec![0; n];
+        let mut mark = |points: &[u32], label: i32| {
+            for i in points {
+                if let Some(l) = labels.get_mut(*i as usize) {
+                    *l = label;
+                }
+            }
+        };
+        for piece in &self.dropped {
+            mark(&piece.points, -1);
+        }
+        for (object, label) in self.objects.iter().zip(1..) {
+            mark(object, label);
+        }
+        labels
+    }
+}
+
 /// A piece that is not reported as an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dropped {
@@ -32,4 +75,143 @@ pub struct Dropped {
 pub enum DropReason {
     /// Too few points or too small to be an object.
     Speck,
+    /// So low that it may be the support's own unevenness.
+    Flat,
+    /// Too large to be an object: furniture, a wall.
+    TooLarge,
+    /// It stands beside the part of the support that was seen.
+    OffSupport,
+}
+
+impl std::fmt::Display for DropReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Speck => "a speck: too few points or too small",
+            Self::Flat => "hardly above the support: may be its unevenness",
+            Self::TooLarge => "too large: furniture or a wall",
+            Self::OffSupport => "not on the part of the support that was seen",
+        })
+    }
+}
+
+/// How a cloud is parted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentOptions {
+    /// Least number of points of an object.
+    pub least_points: usize,
+    /// Least size of an object (diagonal of its box), in metres.
+    pub least_size: f64,
+    /// Largest size of an object (diagonal of its box), in metres.
+    pub largest_size: f64,
+    /// Gap between two points that parts them, in metres; the spacing of the points adds to it.
+    pub gap: f64,
+    /// Height over the support from which a point belongs to an object, in metres; `None` takes it
+    /// from the support's noise (three standard deviations and 1.5 mm).
+    pub margin: Option<f64>,
+    /// Seed of the random samples by which planes are found.
+    pub seed: u64,
+}
+
+impl Default for SegmentOptions {
+    fn default() -> Self {
+        Self {
+            least_points: 100,
+            least_size: 0.015,
+            largest_size: 1.5,
+            gap: 0.008,
+            margin: None,
+            seed: 0,
+        }
+    }
+}
+
+/// Why a cloud cannot be parted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SegmentError {
+    /// The cloud has no points.
+    #[error("the cloud is empty")]
+    EmptyCloud,
+    /// None of the points is finite (and within 100,000 km).
+    #[error("none of the cloud's {points} points is a finite reading")]
+    NoFinitePoints {
+        /// Number of points.
+        points: usize,
+    },
+    /// There are too few readings to say anything.
+    #[error("the cloud has {found} finite points: at least {least} are needed")]
+    TooFewPoints {
+        /// Number of finite points.
+        found: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// No plane is a table.
+    #[error("no table or floor to stand on: {why}")]
+    NoSupport {
+        /// What disqualified the largest plane.
+        why: NoTable,
+    },
+    /// No point has a label other than 0.
+    #[error("the given labels name no object")]
+    NoLabels,
+}
+
+/// Finite points without which nothing is tried.
+const LEAST: usize = 30;
+
+/// The readings of a cloud, by index.
+fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
+    let count = cloud.points.len();
+    let all = cloud.points.iter().zip(0u32..);
+    let seen: Vec<u32> = all.filter(|(p, _)| sight::seen(p)).map(|(_, i)| i).collect();
+    match seen.len() {
+        _ if count == 0 => Err(SegmentError::EmptyCloud),
+        0 => Err(SegmentError::NoFinitePoints { points: count }),
+        found if found < LEAST => Err(SegmentError::TooFewPoints { found, least: LEAST }),
+        _ => Ok(seen),
+    }
+}
+
+/// The support of a scene and the objects on it.
+///
+/// ```
+/// use supersurface::{Point, cloud::PointCloud, segment::{SegmentOptions, segment}};
+/// // A table 0.6 m below the sensor with a box of 6 cm on it, seen from straight above.
+/// let mut cloud = PointCloud::default();
+/// for i in 0..200 * 200 {
+///     let (x, y) = (0.003 * f64::from(i % 200 - 100), 0.003 * f64::from(i / 200 - 100));
+///     let z = if x.abs().max(y.abs()) < 0.03 { 0.54 } else { 0.6 };
+///     cloud.points.push(Point::new(x, y, z));
+/// }
+/// cloud.viewpoint = Some(Point::origin());
+/// let found = segment(&cloud, &SegmentOptions::default())?;
+/// assert_eq!(found.objects.len(), 1);
+/// assert!((found.support.unwrap().offset() - 0.6).abs() < 1e-3);
+/// # Ok::<(), supersurface::segment::SegmentError>(())
+/// ```
+pub fn segment(
+    cloud: &PointCloud,
+    options: &SegmentOptions,
+) -> Result<Segmentation, SegmentError> {
+    let seen = readings(cloud)?;
+    let mut random = Stream::new(options.seed, 0);
+    let (support, sight) = table::find(cloud, &seen, &mut random)
+        .map_err(|why| SegmentError::NoSupport { why })?;
+    let mut class = vec![Class::Missing; cloud.points.len()];
+    for i in &seen {
+        let (Some(p), Some(c)) = (cloud.points.get(*i as usize), class.get_mut(*i as usize)) else {
+            continue;
+        };
+        let above = support.plane.height(p) > support.margin(p, &sight, options);
+        *c = if above { Class::Above } else { Class::Other };
+    }
+    let pieces = clusters::pieces(cloud, &class, &sight, options.gap, 20);
+    let (objects, dropped) = objects::gather(&cloud.points, pieces, &support, options);
+    Ok(Segmentation {
+        support: Some(support.plane),
+        support_noise: support.noise,
+        objects,
+        dropped,
+    })
 }

@@ -1,0 +1,88 @@
+//! Which way does the surface face? Normals of a cloud from each point's neighbourhood.
+//!
+//! The normal of a point is the eigenvector of the smallest eigenvalue of the covariance
+//! sum (q - m)(q - m)^T of the points q within a radius, m their mean, turned towards the sensor
+//! (or, without one, away from the cloud's centroid).
+
+use nalgebra::{Matrix3, SymmetricEigen};
+
+use crate::cloud::{PointCloud, VoxelGrid};
+use crate::{Direction, Point, Vector};
+
+/// Normals at the points named by `indices`, from neighbours within `radius` (metres) among the same
+/// points. `None` where fewer than five neighbours are found or they lie on a line.
+///
+/// ```
+/// use supersurface::{Point, cloud::{PointCloud, normals}};
+/// let points = (0..100).map(|i| Point::new(0.01 * f64::from(i % 10), 0.01 * f64::from(i / 10), 0.5));
+/// let mut cloud = PointCloud::from_points(points.collect());
+/// cloud.viewpoint = Some(Point::origin());
+/// let all: Vec<u32> = (0..100).collect();
+/// assert!(normals(&cloud, &all, 0.03).iter().all(|n| n.is_some_and(|n| n.z < -0.999)));
+/// ```
+pub fn normals(cloud: &PointCloud, indices: &[u32], radius: f64) -> Vec<Option<Direction>> {
+    let Some(grid) = VoxelGrid::new(&cloud.points, indices.iter().copied(), radius) else {
+        return vec![None; indices.len()];
+    };
+    let all = indices.iter().filter_map(|i| cloud.points.get(*i as usize));
+    let finite = all.filter(|p| p.coords.iter().all(|c| c.is_finite()));
+    let (sum, count) = finite.fold((Vector::zeros(), 0.0), |(s, n), p| (s + p.coords, n + 1.0));
+    let centroid = Point::from(sum / f64::max(count, 1.0));
+    let at = |i: &u32| {
+        let p = cloud.points.get(*i as usize)?;
+        let (mut sum, mut squares, mut n) = (Vector::zeros(), Matrix3::zeros(), 0.0);
+        grid.within(p, radius, |j, _| {
+            let d = cloud.points[j as usize] - p;
+            sum += d;
+            squares += d * d.transpose();
+            n += 1.0;
+        });
+        if n < 6.0 {
+            return None;
+        }
+        let normal = smallest_axis(&(squares / n - sum * sum.transpose() / (n * n)))?;
+        let outward = cloud.viewpoint.map_or_else(|| p - centroid, |eye| eye - p);
+        Some(if normal.dot(&outward) < 0.0 { -normal } else { normal })
+    };
+    indices.iter().map(at).collect()
+}
+
+/// The eigenvector of the smallest eigenvalue of a covariance; `None` when the two smallest are the
+/// same to rounding (points on a line) or a number is not finite.
+pub(crate) fn smallest_axis(covariance: &Matrix3<f64>) -> Option<Direction> {
+    let scale = covariance.trace();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    let eigen = SymmetricEigen::try_new(covariance / scale, f64::EPSILON, 100)?;
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    if eigen.eigenvalues[order[1]] < 1e-9 {
+        return None;
+    }
+    let axis = eigen.eigenvectors.column(order[0]).into_owned();
+    axis.norm().is_finite().then(|| Direction::new_normalize(axis))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_faces_outwards_and_a_line_nowhere() {
+        let n = 2000;
+        let ball = (0..n).map(|i| {
+            let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(n);
+            let (a, r) = (2.399_963_229_728_653 * f64::from(i), (1.0 - z * z).sqrt());
+            Point::new(0.05 * r * a.cos(), 0.05 * r * a.sin(), 0.05 * z)
+        });
+        let cloud = PointCloud::from_points(ball.collect());
+        let all: Vec<u32> = (0..n as u32).collect();
+        for (p, normal) in cloud.points.iter().zip(normals(&cloud, &all, 0.01)) {
+            assert!(normal.unwrap().dot(&p.coords) > 0.05 * 0.99);
+        }
+        let line = (0..50).map(|i| Point::new(0.001 * f64::from(i), 0.0, 0.0)).collect();
+        let line = PointCloud::from_points(line);
+        assert!(normals(&line, &[0, 9, 999], 0.01).iter().all(Option::is_none));
+    }
+}

@@ -1,0 +1,155 @@
+//! Where something stands: convex outlines in the support plane.
+//!
+//! Outlines are convex polygons, counter-clockwise, found by Andrew's monotone chain; two are cut by
+//! Sutherland and Hodgman's clipping.
+
+use crate::shape::Plane;
+use crate::{Direction, Point};
+
+/// Coordinates in a plane, in metres.
+pub(crate) type Spot = [f64; 2];
+
+/// Two axes in the support plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ground {
+    axes: [Direction; 2],
+}
+
+impl Ground {
+    /// Axes of a plane.
+    pub(crate) fn of(plane: &Plane) -> Self {
+        Self { axes: plane.tangents() }
+    }
+
+    /// The foot of a point.
+    #[inline]
+    pub(crate) fn spot(&self, p: &Point) -> Spot {
+        [self.axes[0].dot(&p.coords), self.axes[1].dot(&p.coords)]
+    }
+}
+
+/// A convex polygon, counter-clockwise; empty, a point or a line when it has under three corners.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outline {
+    corners: Vec<Spot>,
+}
+
+impl Outline {
+    /// The convex hull of the spots, which are sorted on the way.
+    pub(crate) fn around(spots: &mut Vec<Spot>) -> Self {
+        spots.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        spots.dedup();
+        let mut corners: Vec<Spot> = Vec::new();
+        let mut chain = |spots: &mut dyn Iterator<Item = &Spot>| {
+            let start = corners.len();
+            for s in spots {
+                while corners.len() >= start + 2
+                    && turn(corners[corners.len() - 2], corners[corners.len() - 1], *s) <= 0.0
+                {
+                    corners.pop();
+                }
+                corners.push(*s);
+            }
+            // The last one begins the next chain.
+            corners.pop();
+        };
+        chain(&mut spots.iter());
+        chain(&mut spots.iter().rev());
+        if corners.is_empty() {
+            corners.extend(spots.first());
+        }
+        Self { corners }
+    }
+
+    /// Area in square metres.
+    pub(crate) fn area(&self) -> f64 {
+        0.5 * self.edges().map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+    }
+
+    /// Largest distance between two corners.
+    pub(crate) fn diameter(&self) -> f64 {
+        let far = |a: &Spot| {
+            let d = |b: &Spot| (a[0] - b[0]).hypot(a[1] - b[1]);
+            self.corners.iter().map(d).fold(0.0, f64::max)
+        };
+        self.corners.iter().map(far).fold(0.0, f64::max)
+    }
+
+    /// How deep inside the spot is: the smallest distance to the lines through the edges, negative
+    /// outside; minus infinity when the outline has no area.
+    pub(crate) fn depth(&self, s: &Spot) -> f64 {
+        if self.corners.len() < 3 {
+            return f64::NEG_INFINITY;
+        }
+        let inside = |(a, b): (Spot, Spot)| turn(a, b, *s) / (b[0] - a[0]).hypot(b[1] - a[1]);
+        self.edges().map(inside).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What two outlines have in common.
+    pub(crate) fn common(&self, other: &Self) -> Self {
+        if self.corners.len() < 3 || other.corners.len() < 3 {
+            return Self::default();
+        }
+        let mut corners = self.corners.clone();
+        for (a, b) in other.edges() {
+            let mut kept: Vec<Spot> = Vec::with_capacity(corners.len() + 1);
+            for (k, p) in corners.iter().enumerate() {
+                let q = corners[(k + 1) % corners.len()];
+                let (dp, dq) = (turn(a, b, *p), turn(a, b, q));
+                if dp >= 0.0 {
+                    kept.push(*p);
+                }
+                if (dp >= 0.0) != (dq >= 0.0) {
+                    let t = dp / (dp - dq);
+                    kept.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
+                }
+            }
+            corners = kept;
+        }
+        Self { corners }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (Spot, Spot)> + '_ {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().zip(next).map(|(a, b)| (*a, *b))
+    }
+}
+
+/// Twice the signed area of the triangle a b c: positive for a turn to the left.
+fn turn(a: Spot, b: Spot, c: Spot) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f64, y: f64, side: f64) -> Outline {
+        let mut spots = Vec::new();
+        for i in 0..=4 {
+            for j in 0..=4 {
+                spots.push([x + side * f64::from(i) / 4.0, y + side * f64::from(j) / 4.0]);
+            }
+        }
+        Outline::around(&mut spots)
+    }
+
+    #[test]
+    fn squares_are_measured_and_cut() {
+        let (a, b) = (square(0.0, 0.0, 2.0), square(1.0, 1.5, 4.0));
+        assert_eq!(a.corners.len(), 4);
+        assert!((a.area() - 4.0).abs() < 1e-12 && (a.diameter() - 8f64.sqrt()).abs() < 1e-12);
+        assert!((a.common(&b).area() - 0.5).abs() < 1e-12);
+        assert_eq!(a.common(&square(5.0, 5.0, 1.0)).area(), 0.0);
+        assert!((a.depth(&[0.5, 1.0]) - 0.5).abs() < 1e-12 && a.depth(&[3.0, 1.0]) < -0.99);
+    }
+
+    #[test]
+    fn points_and_lines_have_no_area() {
+        for mut spots in [vec![], vec![[1.0, 2.0]; 5], vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]] {
+            let outline = Outline::around(&mut spots);
+            assert_eq!(outline.area(), 0.0);
+            assert!(outline.depth(&[0.0, 0.0]) < 0.0);
+        }
+    }
+}

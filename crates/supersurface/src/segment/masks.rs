@@ -1,0 +1,37 @@
+//! Segmentations that are given: a cloud that is one object, or one whose points are labelled.
+
+use crate::cloud::PointCloud;
+use crate::numeric::random::Stream;
+use crate::segment::{SegmentError, SegmentOptions, Segmentation, readings, table};
+
+/// All readings as one object, without a support.
+pub fn segment_whole(cloud: &PointCloud) -> Result<Segmentation, SegmentError> {
+    Ok(Segmentation { objects: vec![readings(cloud)?], ..Segmentation::default() })
+}
+
+/// The objects that `cloud.labels` names (0 is background), in the order of their labels, and the
+/// support that the background shows; that there is none is no error here.
+pub fn segment_masks(
+    cloud: &PointCloud,
+    options: &SegmentOptions,
+) -> Result<Segmentation, SegmentError> {
+    let seen = readings(cloud)?;
+    let label = |i: &u32| cloud.labels.get(*i as usize).copied().unwrap_or(0);
+    let mut background = seen.clone();
+    background.retain(|i| label(i) == 0);
+    let mut labelled = seen;
+    labelled.retain(|i| label(i) != 0);
+    if labelled.is_empty() {
+        return Err(SegmentError::NoLabels);
+    }
+    labelled.sort_by_key(label);
+    let objects = labelled.chunk_by(|a, b| label(a) == label(b)).map(<[u32]>::to_vec).collect();
+    let mut random = Stream::new(options.seed, 0);
+    let support = table::find(cloud, &background, &mut random).ok().map(|(support, _)| support);
+    Ok(Segmentation {
+        support: support.as_ref().map(|s| s.plane),
+        support_noise: support.as_ref().map_or(0.0, |s| s.noise),
+        objects,
+        dropped: Vec::new(),
+    })
+}

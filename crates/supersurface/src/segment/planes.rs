@@ -1,0 +1,200 @@
+//! Which large planes are in the cloud? Random samples and consensus (RANSAC), one plane after another.
+//!
+//! A point belongs to the plane n·p + d = 0 when |n·p + d| < 3 sigma(r) |n·e| + floor: depth noise
+//! sigma acts along the ray e, so it counts only as far as the ray is square to the plane. A fixed
+//! width would pick one level of a far wall whose depths are quantised. A sample is scored by the sum of
+//! 1 - (distance / width)^2 over the points inside (MSAC, Torr and Zisserman 2000).
+
+use nalgebra::Matrix3;
+
+use crate::cloud::{PointCloud, smallest_axis};
+use crate::numeric::random::Stream;
+use crate::segment::sight::{Sight, depth_noise};
+use crate::{Direction, Point, Vector};
+
+/// Widths: this many standard deviations, plus a floor in metres.
+const WIDTHS: f64 = 3.0;
+const FLOOR: f64 = 0.0015;
+/// Width where the sensor's place is unknown, in metres.
+const BLIND: f64 = 0.006;
+
+/// A reading as the search sees it: the vector from the eye (or the cloud's middle), and the width
+/// that its noise allows per unit of n·vector.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reading {
+    pub(crate) ray: Vector,
+    pub(crate) slope: f64,
+    pub(crate) floor: f64,
+}
+
+impl Reading {
+    /// The reading of a point.
+    pub(crate) fn new(p: &Point, sight: &Sight, middle: &Point) -> Self {
+        match sight.eye {
+            Some(eye) => {
+                let ray = p - eye;
+                let range = ray.norm().max(1e-6);
+                Self { ray, slope: WIDTHS * depth_noise(range) / range, floor: FLOOR }
+            }
+            None => Self { ray: p - middle, slope: 0.0, floor: BLIND },
+        }
+    }
+}
+
+/// A plane n·v + d = 0 in vectors from the eye, and the readings of the sample that lie in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    /// Unit normal, towards the eye (d > 0) where the eye is known.
+    pub(crate) normal: Direction,
+    /// Height of the eye over the plane.
+    pub(crate) offset: f64,
+    /// Places in the sample of the readings in the plane.
+    pub(crate) members: Vec<u32>,
+}
+
+impl Candidate {
+    /// Signed height of a reading over the plane, and the width that its noise allows.
+    #[inline]
+    pub(crate) fn height(&self, r: &Reading) -> (f64, f64) {
+        height(&self.normal, self.offset, r)
+    }
+}
+
+/// Signed height of a reading over a plane, and the width that its noise allows.
+#[inline]
+pub(crate) fn height(normal: &Vector, offset: f64, r: &Reading) -> (f64, f64) {
+    let along = normal.dot(&r.ray);
+    (along + offset, r.slope * along.abs() + r.floor)
+}
+
+/// A spread of at most `count` points of the cloud, by index, one at random from each of `count`
+/// equal stretches of the list: no stride that could run along a column of the image.
+pub(crate) fn spread(indices: &[u32], count: usize, random: &mut Stream) -> Vec<u32> {
+    if indices.len() <= count {
+        return indices.to_vec();
+    }
+    let bound = |k: usize| k * indices.len() / count;
+    (0..count)
+        .filter_map(|k| indices.get(bound(k) + random.index(bound(k + 1) - bound(k))).copied())
+        .collect()
+}
+
+/// The readings of the points named in `sample`.
+pub(crate) fn readings(cloud: &PointCloud, sample: &[u32], sight: &Sight) -> Vec<Reading> {
+    let points = || sample.iter().filter_map(|i| cloud.points.get(*i as usize));
+    let sum: Vector = points().map(|p| p.coords).sum();
+    let middle = Point::from(sum / sample.len().max(1) as f64);
+    points().map(|p| Reading::new(p, sight, &middle)).collect()
+}
+
+/// The planes that hold the most readings, each with those that no earlier plane holds, until one
+/// holds under 3 % of all or `most` are found.
+pub(crate) fn dominant(all: &[Reading], most: usize, random: &mut Stream) -> Vec<Candidate> {
+    let mut free: Vec<u32> = (0..all.len() as u32).collect();
+    let least = (all.len() / 33).max(20);
+    let mut planes = Vec::new();
+    while planes.len() < most && free.len() >= least {
+        let Some(found) = best(all, &free, random) else { break };
+        if found.members.len() < least {
+            break;
+        }
+        free.retain(|i| {
+            let (h, width) = found.height(&all[*i as usize]);
+            h.abs() > 1.5 * width
+        });
+        planes.push(found);
+    }
+    planes
+}
+
+/// Samples tried for one plane, and readings on which they are scored.
+const TRIALS: usize = 160;
+const JURY: usize = 1500;
+
+/// The plane that most of the free readings agree with.
+fn best(all: &[Reading], free: &[u32], random: &mut Stream) -> Option<Candidate> {
+    let jury: Vec<Reading> =
+        spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
+    let mut best: Option<(f64, Direction, f64)> = None;
+    for trial in 0..TRIALS {
+        let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
+        let mut score = 0.0;
+        for r in &jury {
+            let (h, width) = height(&normal, offset, r);
+            let x = h / width;
+            score += (1.0 - x * x).max(0.0);
+        }
+        if best.is_none_or(|b| score > b.0) {
+            best = Some((score, normal, offset));
+        }
+    }
+    let (_, mut normal, mut offset) = best?;
+    for _ in 0..3 {
+        let inside = free.iter().map(|i| &all[*i as usize]);
+        (normal, offset) = least_squares(inside, &normal, offset, 1.0)?;
+    }
+    let inside = |i: &&u32| {
+        let (h, width) = height(&normal, offset, &all[**i as usize]);
+        h.abs() < width
+    };
+    let members = free.iter().filter(inside).copied().collect();
+    Some(Candidate { normal, offset, members })
+}
+
+/// A plane through three readings; when `near`, the second and third are the nearest to the first of
+/// eight, which finds small planes among many things.
+fn sample(jury: &[Reading], near: bool, random: &mut Stream) -> Option<(Direction, f64)> {
+    let mut draw = || jury.get(random.index(jury.len())).map(|r| r.ray);
+    let a = draw()?;
+    let mut other = || {
+        let mut chosen = draw()?;
+        for _ in 1..if near { 8 } else { 1 } {
+            let next = draw()?;
+            if (next - a).norm_squared() < (chosen - a).norm_squared() {
+                chosen = next;
+            }
+        }
+        Some(chosen)
+    };
+    let (b, c) = (other()?, other()?);
+    let (ab, ac) = (b - a, c - a);
+    let cross = ab.cross(&ac);
+    // Slim triangles say nothing.
+    if !(cross.norm() > 0.1 * ab.norm() * ac.norm()) {
+        return None;
+    }
+    towards_eye(Direction::try_new(cross, 1e-300)?, a)
+}
+
+/// The plane through `point` with the given normal, turned so that the eye is above it.
+fn towards_eye(normal: Direction, point: Vector) -> Option<(Direction, f64)> {
+    let offset = -normal.dot(&point);
+    let plane = if offset < 0.0 { (-normal, -offset) } else { (normal, offset) };
+    plane.1.is_finite().then_some(plane)
+}
+
+/// The plane of least squares through the readings within `share` of their widths about a plane, each
+/// weighted by 1 / width^2.
+pub(crate) fn least_squares<'a>(
+    readings: impl Iterator<Item = &'a Reading>,
+    normal: &Direction,
+    offset: f64,
+    share: f64,
+) -> Option<(Direction, f64)> {
+    // Sums about one of the readings, so that a distant cloud loses no digits.
+    let mut origin = None;
+    let (mut weight, mut sum, mut squares) = (0.0, Vector::zeros(), Matrix3::zeros());
+    for r in readings {
+        let (h, width) = height(normal, offset, r);
+        if h.abs() < share * width {
+            let w = 1.0 / (width * width);
+            let v = r.ray - *origin.get_or_insert(r.ray);
+            weight += w;
+            sum += v * w;
+            squares += (v * w) * v.transpose();
+        }
+    }
+    let mean = sum / weight;
+    let normal = smallest_axis(&(squares / weight - mean * mean.transpose()))?;
+    towards_eye(normal, mean + origin?)
+}

@@ -1,0 +1,226 @@
+//! Which of the planes is a table (or the floor that the objects stand on)?
+//!
+//! A support faces up: its normal leans towards the image's top, n·up = cos(pitch) for a camera
+//! pitched down by `pitch`, while a wall seen by a level or lowered camera has n·up <= 0 and a side wall
+//! n·up = 0. A plane faced squarely is a table only for a camera that looks straight down on it from an
+//! arm's length. A support is near, wide, and what is seen in front of it is on its upper side.
+
+use crate::cloud::{PointCloud, VoxelGrid};
+use crate::numeric::random::Stream;
+use crate::segment::footprint::{Ground, Outline};
+use crate::segment::planes::{
+    Candidate, Reading, dominant, height, least_squares, readings, spread,
+};
+use crate::segment::SegmentOptions;
+use crate::segment::sight::Sight;
+use crate::shape::Plane;
+use crate::Point;
+
+/// Why no plane of a cloud is a support, told of the largest one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoTable {
+    /// No plane holds a fair share of the points.
+    #[error("no plane holds enough of the points")]
+    NoPlane,
+    /// The largest plane is upright.
+    #[error(
+        "the largest plane, {distance:.2} m away, is a wall ({degrees:.0} degrees from facing up)"
+    )]
+    Wall {
+        /// Distance of the sensor from it, in metres.
+        distance: f64,
+        /// Angle between its normal and the image's upward direction, in degrees.
+        degrees: f64,
+    },
+    /// The largest plane that faces up is too far away.
+    #[error("the largest plane that faces up is {distance:.2} m away: farther than {limit:.2} m")]
+    Far {
+        /// Median distance of its points, in metres.
+        distance: f64,
+        /// Largest distance of a support, in metres.
+        limit: f64,
+    },
+    /// Too much was seen beneath the largest plane that faces up: it is the top of something.
+    #[error("{percent:.0} % of the points are beneath the largest plane that faces up")]
+    Below {
+        /// Share of all points that are beneath it, in percent.
+        percent: f64,
+    },
+    /// The largest plane that faces up is too narrow.
+    #[error("the largest plane that faces up is {width:.2} m across, under {limit:.2} m")]
+    Narrow {
+        /// Its largest width, in metres.
+        width: f64,
+        /// Least width of a support, in metres.
+        limit: f64,
+    },
+    /// The largest plane that faces up is too small.
+    #[error("the largest plane that faces up holds {percent:.1} % of the points, under {limit:.1} %")]
+    Small {
+        /// Its share of the points, in percent.
+        percent: f64,
+        /// Least share, in percent.
+        limit: f64,
+    },
+}
+
+/// Median distance of a support's points from the sensor, at most, in metres.
+const FARTHEST: f64 = 3.5;
+/// Distance of a support that the camera faces squarely, at most, in metres.
+const OVERHEAD: f64 = 1.3;
+/// Cosine of the angle to the optical axis from which a plane counts as faced squarely (20 degrees).
+const SQUARE: f64 = 0.94;
+/// n·up of a support at least: a camera pitched down by up to 70 degrees, or rolled as much.
+const LEAST_UP: f64 = 0.34;
+/// Share of the points that a support holds at least.
+const LEAST_SHARE: f64 = 0.1;
+/// Points beneath a support (a floor beside the table) at most, in multiples of its own.
+const MOST_BELOW: f64 = 1.3;
+/// Width of a support at least, in metres.
+const NARROWEST: f64 = 0.2;
+/// Points of the cloud that the search sees, and that the last refinement sees.
+const SAMPLE: usize = 6000;
+const FINE_SAMPLE: usize = 20_000;
+/// Gap in the support's points that parts it in two, in metres.
+const PIECE_GAP: f64 = 0.06;
+
+/// The support that was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Support {
+    pub(crate) plane: Plane,
+    /// Standard deviation of its points, in metres.
+    pub(crate) noise: f64,
+    /// The same in widths of the noise model.
+    pub(crate) relative: f64,
+    /// Where it was seen.
+    pub(crate) outline: Outline,
+}
+
+impl Support {
+    /// Height from which a point is above the support rather than its noise, in metres.
+    pub(crate) fn margin(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> f64 {
+        options.margin.unwrap_or_else(|| {
+            let reading = Reading::new(p, sight, p);
+            let width = reading.slope * self.plane.normal().dot(&reading.ray).abs() + reading.floor;
+            (3.0 * self.relative * width + 0.0015).max(0.003)
+        })
+    }
+}
+
+/// The support among the points named by `indices`.
+pub(crate) fn find(
+    cloud: &PointCloud,
+    indices: &[u32],
+    random: &mut Stream,
+) -> Result<(Support, Sight), NoTable> {
+    let sample = spread(indices, SAMPLE, random);
+    let sight = Sight::of(cloud, &sample);
+    let all = readings(cloud, &sample, &sight);
+    let mut planes = dominant(&all, 6, random);
+    planes.sort_by_key(|c| std::cmp::Reverse(c.members.len()));
+    let mut why = None;
+    for candidate in &planes {
+        match judge(candidate, &all, &sight) {
+            Ok(()) => {
+                let support = refine(cloud, indices, candidate, &sight, random);
+                let Some(support) = support else { continue };
+                let width = support.outline.diameter();
+                if width >= NARROWEST {
+                    return Ok((support, sight));
+                }
+                why.get_or_insert(NoTable::Narrow { width, limit: NARROWEST });
+            }
+            Err(reason) => {
+                why.get_or_insert(reason);
+            }
+        }
+    }
+    Err(why.unwrap_or(NoTable::NoPlane))
+}
+
+/// Whether a plane can be a support.
+fn judge(candidate: &Candidate, all: &[Reading], sight: &Sight) -> Result<(), NoTable> {
+    let share = candidate.members.len() as f64 / all.len() as f64;
+    let beneath = all.iter().filter(|r| {
+        let (h, width) = candidate.height(r);
+        h < -3.0 * width - 0.02
+    });
+    let below = beneath.count() as f64 / all.len() as f64;
+    let mut ranges: Vec<f64> =
+        candidate.members.iter().map(|i| all[*i as usize].ray.norm()).collect();
+    let middle = ranges.len() / 2;
+    let range = *ranges.select_nth_unstable_by(middle, f64::total_cmp).1;
+    if sight.eye.is_some() {
+        // Rounding may take these past 1.
+        let facing = (-candidate.normal.dot(&sight.forward)).clamp(-1.0, 1.0);
+        let up = sight.up.map_or(facing, |up| candidate.normal.dot(&up).clamp(-1.0, 1.0));
+        let overhead = facing > SQUARE && candidate.offset < OVERHEAD;
+        if !overhead && (up < LEAST_UP || facing > SQUARE) {
+            let degrees = up.acos().to_degrees();
+            return Err(NoTable::Wall { distance: candidate.offset, degrees });
+        }
+        if range > FARTHEST {
+            return Err(NoTable::Far { distance: range, limit: FARTHEST });
+        }
+    }
+    if share < LEAST_SHARE {
+        let (percent, limit) = (100.0 * share, 100.0 * LEAST_SHARE);
+        return Err(NoTable::Small { percent, limit });
+    }
+    if below > MOST_BELOW * share {
+        return Err(NoTable::Below { percent: 100.0 * below });
+    }
+    Ok(())
+}
+
+/// The plane by all its points, with its noise and outline.
+fn refine(
+    cloud: &PointCloud,
+    indices: &[u32],
+    candidate: &Candidate,
+    sight: &Sight,
+    random: &mut Stream,
+) -> Option<Support> {
+    let sample = spread(indices, FINE_SAMPLE, random);
+    let all = readings(cloud, &sample, sight);
+    let (mut normal, mut offset) = (candidate.normal, candidate.offset);
+    let (mut share, mut relative, mut noise) = (1.0, 0.0, 0.0);
+    let mut column = Vec::with_capacity(all.len());
+    for _ in 0..4 {
+        (normal, offset) = least_squares(all.iter(), &normal, offset, share)?;
+        let heights = || all.iter().map(|r| height(&normal, offset, r));
+        let inside = || heights().filter(|(h, width)| h.abs() < *width);
+        relative = deviation(&mut column, inside().map(|(h, width)| h / width))?;
+        noise = deviation(&mut column, inside().map(|(h, _)| h))?;
+        share = (2.5 * relative).clamp(0.05, 1.0);
+    }
+    // Back from the eye's frame to the cloud's.
+    let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
+    let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
+    let ground = Ground::of(&plane);
+    let inside = sample.iter().zip(&all).filter(|(_, r)| {
+        let (h, width) = height(&normal, offset, r);
+        h.abs() < width
+    });
+    let feet: Vec<Point> = inside
+        .filter_map(|(i, _)| cloud.points.get(*i as usize))
+        .map(|p| ground.spot(p))
+        .map(|[x, y]| Point::new(x, y, 0.0))
+        .collect();
+    // The plane runs on through other things: only its main piece is the support.
+    let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, PIECE_GAP)?.components();
+    let main = pieces.into_iter().max_by_key(Vec::len)?;
+    let spots = main.iter().filter_map(|i| feet.get(*i as usize));
+    let outline = Outline::around(&mut spots.map(|p| [p.x, p.y]).collect());
+    Some(Support { plane, noise, relative, outline })
+}
+
+/// Standard deviation about zero by the median of the absolute values, which outliers do not move.
+fn deviation(column: &mut Vec<f64>, values: impl Iterator<Item = f64>) -> Option<f64> {
+    column.clear();
+    column.extend(values.map(f64::abs));
+    let middle = column.len() / 2;
+    (!column.is_empty())
+        .then(|| 1.4826 * *column.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
