@@ -159,9 +159,8 @@ mod tests {
     #[test]
     fn finds_what_brute_force_finds() {
         let mut random = Stream::new(3, 0);
-        let points: Vec<Point> = (0..500)
-            .map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1))))
-            .collect();
+        let points: Vec<Point> =
+            (0..500).map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1)))).collect();
         let grid = VoxelGrid::new(&points, 0..500, 0.02).unwrap();
         for p in points.iter().take(50) {
             let mut found = Vec::new();

@@ -122,6 +122,12 @@ pub enum FitError {
         /// Finite points in the view.
         points: usize,
     },
+    /// No surface explains the points.
+    #[error("no surface explains the points: the best fits {:.0} % of them", 100.0 * share)]
+    NoAgreement {
+        /// Share of inliers of the best surface.
+        share: f64,
+    },
     /// The numbers left the range of a shape.
     #[error(transparent)]
     Invalid(#[from] InvalidShape),

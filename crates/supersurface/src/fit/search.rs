@@ -26,6 +26,10 @@ const SHORTLIST: usize = 9;
 const KEPT: usize = 3;
 /// Share of points deep inside a convex body from which it may be hollow.
 const HOLLOW: f64 = 0.01;
+/// A piece stands on the support when the gap below it is less than this share of its size.
+const HOVERING: f64 = 0.8;
+/// A fit with a lesser share of inliers explains nothing.
+const LEAST_SHARE: f64 = 0.1;
 /// Noise is never estimated below this share of the cloud's size.
 const NOISE_FLOOR: f64 = 1e-5;
 /// The support is known no better than this share of the cloud's size.
@@ -85,17 +89,21 @@ impl Normalised {
         if is_line(&fine) {
             return Err(FitError::Line { points: found });
         }
-        let support = view.support.map(|plane| Support {
-            normal: plane.normal().into_inner(),
-            offset: (plane.normal().dot(&centre) + plane.offset()) / scale,
-            standing: view.standing,
-            tolerance: SUPPORT_TOLERANCE,
+        let sides = box_sides(&fine);
+        let support = view.support.map(|plane| {
+            let normal = plane.normal().into_inner();
+            let offset = (normal.dot(&centre) + plane.offset()) / scale;
+            let mut heights: Vec<f64> = fine.iter().map(|p| normal.dot(p) + offset).collect();
+            // a piece that hovers higher than it is large is not the top of something that stands there
+            let standing = view.standing && quantile(&mut heights, 0.02) < HOVERING * sides.max();
+            Support { normal, offset, standing, tolerance: SUPPORT_TOLERANCE }
         });
+        let top = |s: Support| fine.iter().map(|p| s.normal.dot(p) + s.offset).fold(0.0, f64::max);
+        let tallest = support.filter(|s| s.standing).map_or(0.0, top);
         let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
         let free = view.free.iter().map(|p| inward(&p.coords)).collect();
-        let sides = box_sides(&fine);
         let closed = outside.is_none().then(|| sides.iter().map(|s| s.max(0.1)).product());
-        let reach = 0.55 * sides.max();
+        let reach = 0.55 * sides.max().max(tallest);
         let terms = Terms { support, viewpoint: outside, free, closed, reach };
         Ok(Self {
             centre,
@@ -204,7 +212,11 @@ impl Normalised {
             distances.push(d.abs());
             h.mixture.belongs(d) > 0.5
         };
-        let inliers = view.points.iter().map(judge).collect();
+        let inliers: Vec<bool> = view.points.iter().map(judge).collect();
+        let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
+        if share.is_nan() || share < LEAST_SHARE {
+            return Err(FitError::NoAgreement { share });
+        }
         Ok(Fit {
             surface: s.surface(&self.centre, self.scale)?,
             noise: h.mixture.scale * self.scale,

@@ -190,14 +190,11 @@ fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
 /// assert!((found.support.unwrap().offset() - 0.6).abs() < 1e-3);
 /// # Ok::<(), supersurface::segment::SegmentError>(())
 /// ```
-pub fn segment(
-    cloud: &PointCloud,
-    options: &SegmentOptions,
-) -> Result<Segmentation, SegmentError> {
+pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
     let seen = readings(cloud)?;
     let mut random = Stream::new(options.seed, 0);
-    let (support, sight) = table::find(cloud, &seen, &mut random)
-        .map_err(|why| SegmentError::NoSupport { why })?;
+    let (support, sight) =
+        table::find(cloud, &seen, &mut random).map_err(|why| SegmentError::NoSupport { why })?;
     let mut class = vec![Class::Missing; cloud.points.len()];
     for i in &seen {
         let (Some(p), Some(c)) = (cloud.points.get(*i as usize), class.get_mut(*i as usize)) else {

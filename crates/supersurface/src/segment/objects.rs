@@ -44,7 +44,11 @@ impl Piece {
         let mut quantile = |q: f64| {
             let at = (q * heights.len() as f64) as usize;
             let at = at.min(heights.len().saturating_sub(1));
-            if heights.is_empty() { 0.0 } else { *heights.select_nth_unstable_by(at, f64::total_cmp).1 }
+            if heights.is_empty() {
+                0.0
+            } else {
+                *heights.select_nth_unstable_by(at, f64::total_cmp).1
+            }
         };
         let (bottom, top) = (quantile(0.02), quantile(0.98));
         let outline = Outline::around(&mut sample.iter().map(|p| ground.spot(p)).collect());
@@ -60,9 +64,8 @@ impl Piece {
 
     /// Smallest distance to another piece, or infinity when it is over `most`.
     fn gap(&self, other: &Self, most: f64) -> f64 {
-        let apart = (0..3).any(|k| {
-            self.low[k] > other.high[k] + most || other.low[k] > self.high[k] + most
-        });
+        let apart = (0..3)
+            .any(|k| self.low[k] > other.high[k] + most || other.low[k] > self.high[k] + most);
         if apart {
             return f64::INFINITY;
         }

@@ -113,8 +113,7 @@ const JURY: usize = 1500;
 
 /// The plane that most of the free readings agree with.
 fn best(all: &[Reading], free: &[u32], random: &mut Stream) -> Option<Candidate> {
-    let jury: Vec<Reading> =
-        spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
+    let jury: Vec<Reading> = spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
     let mut best: Option<(f64, Direction, f64)> = None;
     for trial in 0..TRIALS {
         let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
