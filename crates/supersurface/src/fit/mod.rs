@@ -24,6 +24,7 @@
 //! It does not promise the global optimum, and the hidden side of a single view is the simplest body that
 //! the evidence allows, not a measurement.
 
+mod columns;
 mod evidence;
 mod free_space;
 mod kernel;

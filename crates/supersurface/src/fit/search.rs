@@ -1,5 +1,6 @@
 //! The way from points to a fit: normalise, search each family, choose, and judge every point.
 
+use super::columns::Sample;
 use super::evidence::{shows_hole, toroid_margin};
 use super::kernel::distance;
 use super::noise::{Law, Mixture};
@@ -48,10 +49,11 @@ pub(super) fn search(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitEr
 struct Normalised {
     centre: Vector,
     scale: f64,
-    sketch: Vec<Vector>,
-    coarse: Vec<Vector>,
-    middle: Vec<Vector>,
-    fine: Vec<Vector>,
+    sketch: Sample,
+    coarse: Sample,
+    middle: Sample,
+    fine: Sample,
+    points: Vec<Vector>,
     terms: Terms,
 }
 
@@ -84,8 +86,8 @@ impl Normalised {
             return Err(FitError::OnePoint { points: found });
         }
         let inward = |p: &Vector| (p - centre) / scale;
-        let sample = |count: usize| spread(&points, count).map(inward).collect::<Vec<_>>();
-        let fine = sample(FINE);
+        let sample = |count: usize| Sample::new(spread(&points, count).map(inward));
+        let fine: Vec<Vector> = spread(&points, FINE).map(inward).collect();
         if is_line(&fine) {
             return Err(FitError::Line { points: found });
         }
@@ -111,7 +113,8 @@ impl Normalised {
             sketch: sample(SKETCH),
             coarse: sample(COARSE),
             middle: sample(MIDDLE),
-            fine,
+            fine: Sample::new(fine.iter().copied()),
+            points: fine,
             terms,
         })
     }
@@ -120,10 +123,12 @@ impl Normalised {
     fn best(&self, family: Family) -> Hypothesis {
         let mut work = Workspace::default();
         // most starts are hopeless after a few rounds on few points
-        let mut ranked: Vec<Hypothesis> =
-            starts(&self.fine, &self.terms, family).iter().map(|s| begin(s, &self.terms)).collect();
+        let mut ranked: Vec<Hypothesis> = starts(&self.points, &self.terms, family)
+            .iter()
+            .map(|s| begin(s, &self.terms))
+            .collect();
         // among outliers a sketch misleads: there all starts are ranked at once
-        let rounds: &[(&[Vector], usize, usize)] = if self.terms.closed.is_some() {
+        let rounds: &[(&Sample, usize, usize)] = if self.terms.closed.is_some() {
             &[(&self.coarse, 8, KEPT)]
         } else {
             &[(&self.sketch, 4, SHORTLIST), (&self.coarse, 6, KEPT)]
@@ -180,7 +185,7 @@ impl Normalised {
         }
         let toroid = self.best(Family::Supertoroid);
         let margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
-        if margin > 0.0 && shows_hole(&toroid, &self.fine) {
+        if margin > 0.0 && shows_hole(&toroid, &self.points) {
             (toroid, margin)
         } else {
             (ellipsoid, -margin)
@@ -192,11 +197,11 @@ impl Normalised {
         let deep = -(3.0 * h.mixture.scale).max(0.04);
         let mut row = [0.0; COUNT];
         let mut is_deep = |x: &Vector| distance::<false>(&h.parameters, x, &mut row) < deep;
-        let within = self.fine.iter().filter(|x| is_deep(x)).count();
+        let within = self.points.iter().filter(|x| is_deep(x)).count();
         let mut intrusions = Vec::new();
         self.terms.intrusions(&h.parameters, FINE_RAYS, &mut intrusions);
         let through = intrusions.iter().filter(|x| is_deep(x)).count();
-        within as f64 > HOLLOW * self.fine.len() as f64 || through > 0
+        within as f64 > HOLLOW * self.points.len() as f64 || through > 0
     }
 
     fn judge(&self, view: &View<'_>, h: &Hypothesis, margin: f64) -> Result<Fit, FitError> {

@@ -1,10 +1,11 @@
 //! Damped least squares on the mixture's weights, with the noise annealed and re-estimated in each round.
 
-use super::kernel::distance;
+use super::columns::{Evaluation, Sample};
 use super::noise::Mixture;
 use super::parameters::{COUNT, Parameters, Row};
 use super::terms::{Beside, Normal, Terms};
 use crate::Vector;
+use crate::numeric::lanes::{Job, dispatch, dot};
 
 /// A body with its noise and its cost (negative log-likelihood of the points plus all other terms).
 #[derive(Clone, Copy, Debug)]
@@ -33,46 +34,68 @@ pub(super) struct Schedule {
 /// Buffers that are used again from one hypothesis to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace {
-    distances: Vec<f64>,
-    trial: Vec<f64>,
-    rows: Vec<Row>,
-    trial_rows: Vec<Row>,
+    now: Evaluation,
+    trial: Evaluation,
+    weights: Vec<f64>,
+    weighted: Vec<f64>,
     intrusions: Vec<Vector>,
 }
 
-/// What stands in for a distance that is not a number: far away.
-const FAR: f64 = 10.0;
-
 impl Workspace {
-    /// Distances of all points, with derivatives, into the trial buffers.
-    fn evaluate(&mut self, s: &Parameters, points: &[Vector]) {
-        self.trial.resize(points.len(), 0.0);
-        self.trial_rows.resize(points.len(), [0.0; COUNT]);
-        for ((x, d), row) in points.iter().zip(&mut self.trial).zip(&mut self.trial_rows) {
-            let value = distance::<true>(s, x, row);
-            *d = if value.is_finite() { value } else { FAR };
-        }
+    /// The points' part of the normal equations at the present body.
+    fn normal(&mut self, mixture: &Mixture, points: usize) -> Normal {
+        self.weights.clear();
+        self.weights.extend(self.now.distances[..points].iter().map(|d| mixture.weight(*d)));
+        self.weights.resize(self.now.distances.len(), 0.0);
+        self.weighted.resize(self.weights.len(), 0.0);
+        let mut normal = Normal::zero();
+        dispatch(Accumulate {
+            evaluation: &self.now,
+            weights: &self.weights,
+            weighted: &mut self.weighted,
+            normal: &mut normal,
+        });
+        normal.cost = mixture.cost(&self.now.distances[..points]);
+        normal
     }
 
-    fn beside(&self, mixture: &Mixture, schedule: &Schedule) -> Beside<'_> {
-        Beside {
-            points: self.distances.len(),
-            scale: mixture.scale,
-            rays: schedule.rays,
-            intrusions: &self.intrusions,
-        }
+    fn beside(&self, points: usize, mixture: &Mixture, schedule: &Schedule) -> Beside<'_> {
+        Beside { points, scale: mixture.scale, rays: schedule.rays, intrusions: &self.intrusions }
     }
 
     fn accept(&mut self) {
-        std::mem::swap(&mut self.distances, &mut self.trial);
-        std::mem::swap(&mut self.rows, &mut self.trial_rows);
+        std::mem::swap(&mut self.now, &mut self.trial);
+    }
+}
+
+/// `Jᵀ W J` and `Jᵀ W d`, a column at a time.
+struct Accumulate<'a> {
+    evaluation: &'a Evaluation,
+    weights: &'a [f64],
+    weighted: &'a mut [f64],
+    normal: &'a mut Normal,
+}
+
+impl Job for Accumulate<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Evaluation { distances, rows } = self.evaluation;
+        for (i, row) in rows.iter().enumerate() {
+            for ((w, weight), value) in self.weighted.iter_mut().zip(self.weights).zip(row) {
+                *w = weight * value;
+            }
+            self.normal.gradient[i] = dot(self.weighted, distances);
+            for (entry, other) in self.normal.matrix[i].iter_mut().zip(&rows[..=i]) {
+                *entry = dot(self.weighted, other);
+            }
+        }
     }
 }
 
 /// Improves a hypothesis until a round gains nothing or the schedule ends.
 pub(super) fn refine(
     start: &Hypothesis,
-    points: &[Vector],
+    points: &Sample,
     terms: &Terms,
     schedule: &Schedule,
     work: &mut Workspace,
@@ -82,18 +105,14 @@ pub(super) fn refine(
     let mut annealed = schedule.scale;
     let mut damping = 1e-3;
     let mut failures = 0;
-    work.evaluate(&s, points);
-    work.accept();
+    let n = points.len();
+    work.now.fill(&s, points);
     mixture.density = terms.outlier_density(&s);
-    mixture.update(&work.distances, schedule.floor.max(annealed), 2);
+    mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
         terms.intrusions(&s, schedule.rays, &mut work.intrusions);
-        let mut normal = Normal::zero();
-        for (d, row) in work.distances.iter().zip(&work.rows) {
-            normal.add(*d, mixture.weight(*d), row);
-        }
-        normal.cost = mixture.cost(&work.distances);
-        terms.add(&s, &work.beside(&mixture, schedule), &mut normal);
+        let mut normal = work.normal(&mixture, n);
+        terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
         let before = normal.cost;
         let mut gain = None;
         for _ in 0..4 {
@@ -102,10 +121,10 @@ pub(super) fn refine(
                 continue;
             };
             let next = s.stepped(&step);
-            work.evaluate(&next, points);
+            work.trial.fill(&next, points);
             let mut after = Normal::zero();
-            terms.add(&next, &work.beside(&mixture, schedule), &mut after);
-            let after = after.cost + mixture.cost(&work.trial);
+            terms.add(&next, &work.beside(n, &mixture, schedule), &mut after);
+            let after = after.cost + mixture.cost(&work.trial.distances[..n]);
             if after < before {
                 (s, gain) = (next, Some(before - after));
                 work.accept();
@@ -117,7 +136,7 @@ pub(super) fn refine(
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);
-        mixture.update(&work.distances, schedule.floor.max(annealed), 2);
+        mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance);
@@ -125,14 +144,14 @@ pub(super) fn refine(
             break;
         }
     }
-    mixture.update(&work.distances, schedule.floor, 6);
+    mixture.update(&work.now.distances[..n], schedule.floor, 6);
     terms.intrusions(&s, schedule.rays, &mut work.intrusions);
     let mut extra = Normal::zero();
-    terms.add(&s, &work.beside(&mixture, schedule), &mut extra);
-    let cost = mixture.cost(&work.distances)
+    terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);
+    let cost = mixture.cost(&work.now.distances[..n])
         + extra.cost
-        + terms.spread_cost(&s, points.len())
-        + terms.facing_cost(&s, &mixture, points);
+        + terms.spread_cost(&s, n)
+        + terms.facing_cost(&mixture, points, &work.now);
     Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
 }
 

@@ -1,6 +1,7 @@
 //! What is known beside the points: the support from which the body rises, the space that rays prove
 //! empty, and a weak preference for bodies that are not needles.
 
+use super::columns::{Evaluation, Sample};
 use super::kernel::distance;
 use super::noise::Mixture;
 use super::parameters::{COUNT, EXPONENT, Family, Parameters, RING, Row};
@@ -96,17 +97,20 @@ impl Terms {
 
     /// What the points on sides that face away from the sensor cost: it cannot have seen them there, so they
     /// are outliers.
-    pub(super) fn facing_cost(&self, s: &Parameters, mixture: &Mixture, points: &[Vector]) -> f64 {
+    pub(super) fn facing_cost(
+        &self,
+        mixture: &Mixture,
+        points: &Sample,
+        evaluation: &Evaluation,
+    ) -> f64 {
         let Some(viewpoint) = self.viewpoint else { return 0.0 };
-        let mut row = [0.0; COUNT];
         let mut cost = 0.0;
-        for x in points {
-            let d = distance::<true>(s, x, &mut row);
-            // moving the body by its normal changes the distance by -1: the row of the position is -n
-            let normal = -Vector::new(row[6], row[7], row[8]);
-            let ray = x - viewpoint;
-            if d.is_finite() && normal.dot(&ray) > 0.4 * normal.norm() * ray.norm() {
-                cost += mixture.price_of_leaving(d);
+        for i in 0..points.len() {
+            // moving the body along its normal lowers the distance: the row of the position is -n
+            let normal = -Vector::from_fn(|k, _| evaluation.rows[6 + k][i]);
+            let ray = points.point(i) - viewpoint;
+            if normal.dot(&ray) > 0.4 * normal.norm() * ray.norm() {
+                cost += mixture.price_of_leaving(evaluation.distances[i]);
             }
         }
         cost
