@@ -16,15 +16,15 @@ use crate::{Point, Vector};
 const LEAST_POINTS: usize = 12;
 /// Points that sort out the starts, that rank them, that refine the best of them, and that decide.
 const SKETCH: usize = 60;
-const COARSE: usize = 100;
-const MIDDLE: usize = 180;
-const FINE: usize = 400;
+const COARSE: usize = 160;
+const MIDDLE: usize = 240;
+const FINE: usize = 600;
 /// Lines of sight that are looked at beside the middle and the fine set of points.
 const MIDDLE_RAYS: usize = 24;
 const FINE_RAYS: usize = 48;
 /// How many starts are ranked, and how many of these are refined.
-const SHORTLIST: usize = 9;
-const KEPT: usize = 3;
+const SHORTLIST: usize = 10;
+const KEPT: usize = 4;
 /// Share of points deep inside a convex body from which it may be hollow.
 const HOLLOW: f64 = 0.01;
 /// A piece stands on the support when the gap below it is less than this share of its size.
@@ -129,7 +129,7 @@ impl Normalised {
             .collect();
         // among outliers a sketch misleads: there all starts are ranked at once
         let rounds: &[(&Sample, usize, usize)] = if self.terms.closed.is_some() {
-            &[(&self.coarse, 8, KEPT)]
+            &[(&self.coarse, 10, KEPT)]
         } else {
             &[(&self.sketch, 4, SHORTLIST), (&self.coarse, 6, KEPT)]
         };
