@@ -6,8 +6,8 @@ mod sets;
 mod units;
 mod voxels;
 
-pub(crate) use normals::smallest_axis;
 pub use normals::normals;
+pub(crate) use normals::smallest_axis;
 pub use point_cloud::PointCloud;
 pub(crate) use sets::Sets;
 pub use units::{UnitHint, unit_hint};

@@ -74,7 +74,7 @@ impl<'a> VoxelGrid<'a> {
     pub fn within(&self, p: &Point, radius: f64, mut visit: impl FnMut(u32, f64)) {
         let finite = p.coords.iter().all(|c| c.is_finite()) && radius >= 0.0;
         let reach = (radius / self.cell).ceil();
-        if !finite || !(reach <= 64.0) {
+        if !finite || reach.is_nan() || reach > 64.0 {
             return;
         }
         let (centre, reach) = (key(p, self.cell), reach as i64);
@@ -159,9 +159,8 @@ mod tests {
     #[test]
     fn finds_what_brute_force_finds() {
         let mut random = Stream::new(3, 0);
-        let points: Vec<Point> = (0..500)
-            .map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1))))
-            .collect();
+        let points: Vec<Point> =
+            (0..500).map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1)))).collect();
         let grid = VoxelGrid::new(&points, 0..500, 0.02).unwrap();
         for p in points.iter().take(50) {
             let mut found = Vec::new();

@@ -113,8 +113,7 @@ const JURY: usize = 1500;
 
 /// The plane that most of the free readings agree with.
 fn best(all: &[Reading], free: &[u32], random: &mut Stream) -> Option<Candidate> {
-    let jury: Vec<Reading> =
-        spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
+    let jury: Vec<Reading> = spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
     let mut best: Option<(f64, Direction, f64)> = None;
     for trial in 0..TRIALS {
         let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
@@ -160,7 +159,8 @@ fn sample(jury: &[Reading], near: bool, random: &mut Stream) -> Option<(Directio
     let (ab, ac) = (b - a, c - a);
     let cross = ab.cross(&ac);
     // Slim triangles say nothing.
-    if !(cross.norm() > 0.1 * ab.norm() * ac.norm()) {
+    let slim = cross.norm() <= 0.1 * ab.norm() * ac.norm();
+    if slim {
         return None;
     }
     towards_eye(Direction::try_new(cross, 1e-300)?, a)

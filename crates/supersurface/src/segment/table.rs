@@ -5,16 +5,16 @@
 //! n·up = 0. A plane faced squarely is a table only for a camera that looks straight down on it from an
 //! arm's length. A support is near, wide, and what is seen in front of it is on its upper side.
 
+use crate::Point;
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::random::Stream;
+use crate::segment::SegmentOptions;
 use crate::segment::footprint::{Ground, Outline};
 use crate::segment::planes::{
     Candidate, Reading, dominant, height, least_squares, readings, spread,
 };
-use crate::segment::SegmentOptions;
 use crate::segment::sight::Sight;
 use crate::shape::Plane;
-use crate::Point;
 
 /// Why no plane of a cloud is a support, told of the largest one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,7 +56,9 @@ pub enum NoTable {
         limit: f64,
     },
     /// The largest plane that faces up is too small.
-    #[error("the largest plane that faces up holds {percent:.1} % of the points, under {limit:.1} %")]
+    #[error(
+        "the largest plane that faces up holds {percent:.1} % of the points, under {limit:.1} %"
+    )]
     Small {
         /// Its share of the points, in percent.
         percent: f64,
@@ -103,7 +105,9 @@ impl Support {
         options.margin.unwrap_or_else(|| {
             let reading = Reading::new(p, sight, p);
             let width = reading.slope * self.plane.normal().dot(&reading.ray).abs() + reading.floor;
-            (3.0 * self.relative * width + 0.0015).max(0.003)
+            let range = reading.ray.norm().min(3.0);
+            // The last term is the camera's own distortion, which bends flat things with distance.
+            3.0 * self.relative * width + 0.001 + 0.0015 * range * range
         })
     }
 }
@@ -221,6 +225,5 @@ fn deviation(column: &mut Vec<f64>, values: impl Iterator<Item = f64>) -> Option
     column.clear();
     column.extend(values.map(f64::abs));
     let middle = column.len() / 2;
-    (!column.is_empty())
-        .then(|| 1.4826 * *column.select_nth_unstable_by(middle, f64::total_cmp).1)
+    (!column.is_empty()).then(|| 1.4826 * *column.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
