@@ -64,9 +64,10 @@ const SMALLEST: f64 = 0.004;
 ///
 /// ```
 /// use supersurface::{Point, cloud::{PointCloud, UnitHint, unit_hint}};
-/// let table = |side: f64| (0..100).map(|i| Point::new(side * f64::from(i % 10), side * f64::from(i / 10), 7.0 * side));
-/// assert_eq!(unit_hint(&PointCloud::from_points(table(0.1).collect())), None);
-/// assert_eq!(unit_hint(&PointCloud::from_points(table(100.0).collect())), Some(UnitHint::Millimetres));
+/// let table = (0..100).map(|i| Point::new(0.1 * f64::from(i % 10), 0.1 * f64::from(i / 10), 0.7));
+/// let table = PointCloud::from_points(table.collect());
+/// assert_eq!(unit_hint(&table), None);
+/// assert_eq!(unit_hint(&table.scaled(1000.0)), Some(UnitHint::Millimetres));
 /// ```
 pub fn unit_hint(cloud: &PointCloud) -> Option<UnitHint> {
     let count = cloud.finite_count();

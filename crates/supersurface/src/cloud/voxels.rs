@@ -74,7 +74,7 @@ impl<'a> VoxelGrid<'a> {
     pub fn within(&self, p: &Point, radius: f64, mut visit: impl FnMut(u32, f64)) {
         let finite = p.coords.iter().all(|c| c.is_finite()) && radius >= 0.0;
         let reach = (radius / self.cell).ceil();
-        if !finite || !(reach <= 64.0) {
+        if !finite || reach.is_nan() || reach > 64.0 {
             return;
         }
         let (centre, reach) = (key(p, self.cell), reach as i64);

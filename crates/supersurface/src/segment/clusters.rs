@@ -7,7 +7,7 @@
 
 use crate::Point;
 use crate::cloud::{PointCloud, Sets, VoxelGrid};
-use crate::segment::sight::Sight;
+use crate::segment::sight::{Sight, grid};
 
 /// What a point is to the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +33,8 @@ pub(crate) fn pieces(
     gap: f64,
     least: usize,
 ) -> Vec<Vec<u32>> {
-    match (cloud.grid, sight.pixel, sight.eye) {
-        (Some([w, h]), Some(pixel), Some(eye)) if w.checked_mul(h) == Some(class.len()) => {
+    match (grid(cloud), sight.pixel, sight.eye) {
+        (Some([w, _]), Some(pixel), Some(eye)) => {
             let near = |a: &Point, b: &Point| {
                 let range = (a - eye).norm().max((b - eye).norm());
                 let reach = gap + PIXELS * pixel * range;

@@ -9,8 +9,10 @@
 
 mod clusters;
 mod footprint;
+mod image;
 mod masks;
 mod objects;
+mod piece;
 mod planes;
 mod sight;
 mod table;
@@ -21,6 +23,7 @@ pub use table::NoTable;
 use crate::cloud::PointCloud;
 use crate::numeric::random::Stream;
 use crate::segment::clusters::Class;
+use crate::segment::image::Image;
 use crate::shape::Plane;
 
 /// What a cloud is made of. Indices into the cloud's points; never copies.
@@ -81,6 +84,10 @@ pub enum DropReason {
     TooLarge,
     /// It stands beside the part of the support that was seen.
     OffSupport,
+    /// The border of the image cuts most of it off.
+    CutOff,
+    /// A small piece in the air, with the support seen under it: stray readings.
+    Hanging,
 }
 
 impl std::fmt::Display for DropReason {
@@ -90,6 +97,8 @@ impl std::fmt::Display for DropReason {
             Self::Flat => "hardly above the support: may be its unevenness",
             Self::TooLarge => "too large: furniture or a wall",
             Self::OffSupport => "not on the part of the support that was seen",
+            Self::CutOff => "cut off by the border of the image",
+            Self::Hanging => "hangs in the air: stray readings",
         })
     }
 }
@@ -204,7 +213,12 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         *c = if above { Class::Above } else { Class::Other };
     }
     let pieces = clusters::pieces(cloud, &class, &sight, options.gap, 20);
-    let (objects, dropped) = objects::gather(&cloud.points, pieces, &support, options);
+    let image = match (sight::grid(cloud), sight.eye) {
+        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
+        _ => None,
+    };
+    let (objects, dropped) =
+        objects::gather(&cloud.points, pieces, &support, &sight, image, options);
     Ok(Segmentation {
         support: Some(support.plane),
         support_noise: support.noise,

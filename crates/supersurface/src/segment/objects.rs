@@ -1,102 +1,81 @@
 //! Which pieces are objects? Joins what one thing was broken into, and leaves out what is none.
 //!
-//! An occlusion, a thin wall or a dark patch breaks a thing into pieces. Two are joined when the
-//! smaller one is near and stands (in the support plane) within the other's outline, as the inside of a
-//! cup within its rim, or when it is small beside the other and hangs in the air, as a handle. What is
-//! left must be large enough, rise over the noise, and stand on the part of the support that was seen.
+//! An occlusion, a thin wall or a dark patch breaks a thing into pieces. Two are joined when
+//! - the smaller is a crumb beside the larger and near, or within its outline in the support plane;
+//! - their outlines overlap and the gap is slight for their size: things that stand side by side have
+//!   outlines apart;
+//! - one is hollow, rises as high, and the other is in front of it: the two sides of a cup;
+//! - both rise as high, lie in one line, and a third hides what is between: a box behind a can.
+//!
+//! What is left must be large enough, and stand on the part of the support that was seen.
 
 use crate::Point;
-use crate::cloud::VoxelGrid;
-use crate::segment::footprint::{Ground, Outline};
+use crate::segment::footprint::Ground;
+use crate::segment::image::Image;
+use crate::segment::piece::Piece;
+use crate::segment::sight::Sight;
 use crate::segment::table::Support;
 use crate::segment::{DropReason, Dropped, SegmentOptions};
 
-/// A piece of the cloud above the support.
-#[derive(Clone, Debug)]
-struct Piece {
-    points: Vec<u32>,
-    /// Heights of its lowest and highest points over the support, without the last 2 %, in metres.
-    bottom: f64,
-    top: f64,
-    outline: Outline,
-    /// Some of its points, one in a cube of `GRAIN`.
-    sample: Vec<Point>,
-    low: Point,
-    high: Point,
-}
-
-/// Distance between the points by which gaps are measured, in metres.
-const GRAIN: f64 = 0.006;
-
-impl Piece {
-    fn new(points: Vec<u32>, cloud: &[Point], support: &Support, ground: &Ground) -> Self {
-        let step = (points.len() / 3000).max(1);
-        let some = points.iter().copied().step_by(step);
-        let sample: Vec<Point> = VoxelGrid::new(cloud, some, GRAIN)
-            .map(|g| g.representatives().filter_map(|i| cloud.get(i as usize)).copied().collect())
-            .unwrap_or_default();
-        let mut heights: Vec<f64> = points
-            .iter()
-            .step_by(step)
-            .filter_map(|i| cloud.get(*i as usize))
-            .map(|p| support.plane.height(p))
-            .collect();
-        let mut quantile = |q: f64| {
-            let at = (q * heights.len() as f64) as usize;
-            let at = at.min(heights.len().saturating_sub(1));
-            if heights.is_empty() {
-                0.0
-            } else {
-                *heights.select_nth_unstable_by(at, f64::total_cmp).1
-            }
-        };
-        let (bottom, top) = (quantile(0.02), quantile(0.98));
-        let outline = Outline::around(&mut sample.iter().map(|p| ground.spot(p)).collect());
-        let first = sample.first().copied().unwrap_or(Point::origin());
-        let low = sample.iter().fold(first, |a, b| a.inf(b));
-        let high = sample.iter().fold(first, |a, b| a.sup(b));
-        Self { points, bottom, top, outline, sample, low, high }
-    }
-
-    fn size(&self) -> f64 {
-        (self.high - self.low).norm()
-    }
-
-    /// Smallest distance to another piece, or infinity when it is over `most`.
-    fn gap(&self, other: &Self, most: f64) -> f64 {
-        let apart = (0..3)
-            .any(|k| self.low[k] > other.high[k] + most || other.low[k] > self.high[k] + most);
-        if apart {
-            return f64::INFINITY;
-        }
-        let mut least = most * most;
-        let mut found = false;
-        for p in &self.sample {
-            for q in &other.sample {
-                let d = (p - q).norm_squared();
-                if d < least {
-                    (least, found) = (d, true);
-                }
-            }
-        }
-        if found { least.sqrt() } else { f64::INFINITY }
-    }
-}
+/// Depth inside the support's outline at which most of an object is, in metres.
+const EDGE: f64 = 0.01;
+/// Top of a thing, in margins, up to which it may be the support's own unevenness.
+const FLAT: f64 = 1.5;
+/// Pixels under a piece in which what hides it is sought: at once, or across the bottom of a pot.
+const BENEATH: usize = 8;
+const ACROSS: usize = 100;
+/// Size under which nothing can hang in the air, in metres.
+const HANGING: f64 = 0.1;
 
 /// The objects among `pieces`, in the order of their first points, and what is none.
 pub(crate) fn gather(
     cloud: &[Point],
     pieces: Vec<Vec<u32>>,
     support: &Support,
+    sight: &Sight,
+    mut image: Option<Image<'_>>,
     options: &SegmentOptions,
 ) -> (Vec<Vec<u32>>, Vec<Dropped>) {
     let ground = Ground::of(&support.plane);
-    let mut pieces: Vec<Piece> =
-        pieces.into_iter().map(|p| Piece::new(p, cloud, support, &ground)).collect();
-    join(&mut pieces, cloud, support, &ground);
-    let (mut objects, mut dropped) = (Vec::new(), Vec::new());
-    for piece in pieces {
-        match fault(&piece, support, &ground, options) {
+    let (mut kept, mut dropped) = (Vec::new(), Vec::new());
+    for points in pieces {
+        let piece = Piece::new(points, cloud, &support.plane, &ground);
+        let reason = misplaced(&piece, support, &ground, options);
+        kept.push((piece, reason));
+    }
+    // The smallest first, so that crumbs find their thing before things find each other.
+    kept.sort_by_key(|(p, _)| (p.points.len(), p.points.first().copied()));
+    let (kept, faults): (Vec<Piece>, Vec<Option<DropReason>>) = kept.into_iter().unzip();
+    let mut pieces: Vec<Option<Piece>> = kept.into_iter().map(Some).collect();
+    if let Some(image) = &mut image {
+        for (k, piece) in pieces.iter().enumerate() {
+            piece.iter().for_each(|p| image.own(&p.points, k));
+        }
+        for piece in pieces.iter_mut().flatten() {
+            piece.hollow = image.hollow(&piece.points);
+        }
+    }
+    for k in 0..pieces.len() {
+        let Some(piece) = pieces[k].take() else { continue };
+        let part_of = owner(k, &piece, &pieces, &faults, image.as_ref(), &ground);
+        let Some((j, other)) = part_of.and_then(|j| Some((j, pieces[j].take()?))) else {
+            pieces[k] = Some(piece);
+            continue;
+        };
+        let mut points = other.points;
+        points.extend(piece.points);
+        points.sort_unstable();
+        let mut whole = Piece::new(points, cloud, &support.plane, &ground);
+        if let Some(image) = &mut image {
+            image.own(&whole.points, j);
+            whole.hollow = image.hollow(&whole.points);
+        }
+        pieces[j] = Some(whole);
+    }
+    let mut objects = Vec::new();
+    for (piece, fault) in pieces.into_iter().zip(faults) {
+        let Some(piece) = piece else { continue };
+        match fault.or_else(|| slight(&piece, support, sight, image.as_ref(), options)) {
             None => objects.push(piece.points),
             Some(reason) => dropped.push(Dropped { points: piece.points, reason }),
         }
@@ -105,63 +84,129 @@ pub(crate) fn gather(
     (objects, dropped)
 }
 
-/// Joins pieces of one thing until none belongs to another, the smallest first.
-fn join(pieces: &mut Vec<Piece>, cloud: &[Point], support: &Support, ground: &Ground) {
-    pieces.sort_by_key(|p| (p.points.len(), p.points.first().copied()));
-    let mut k = 0;
-    while k < pieces.len() {
-        let small = &pieces[k];
-        let owner = (k + 1..pieces.len())
-            .filter_map(|j| belongs(small, &pieces[j], support).map(|gap| (gap, j)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        match owner {
-            Some((_, j)) => {
-                let mut points = pieces[j].points.clone();
-                points.extend(&pieces[k].points);
-                points.sort_unstable();
-                pieces[j] = Piece::new(points, cloud, support, ground);
-                pieces.remove(k);
-            }
-            None => k += 1,
+/// The piece that piece number `k` is part of: the nearest of those that it belongs to.
+fn owner(
+    k: usize,
+    piece: &Piece,
+    pieces: &[Option<Piece>],
+    faults: &[Option<DropReason>],
+    image: Option<&Image<'_>>,
+    ground: &Ground,
+) -> Option<usize> {
+    let hangs = piece.aloft() && image.is_some_and(|i| i.hangs(&piece.points));
+    let cup = |inner: &Piece, outer: usize| {
+        let reach = if inner.hollow > 0.78 { ACROSS } else { BENEATH };
+        inner.hollow > 0.5 && image.and_then(|i| i.before(&inner.points, reach)) == Some(outer)
+    };
+    let joint = |j: usize, other: &Piece| {
+        // The gap comes last: it costs most.
+        let cups = || {
+            let cup = level(piece, other) && (cup(piece, j) || cup(other, k));
+            let most = 0.4 * piece.size().max(other.size());
+            if cup { piece.gap(other, most.min(0.3)) } else { None }
+        };
+        let ends = || {
+            let hidden = in_line(piece, other, ground)
+                && image.is_some_and(|i| i.hidden_between(&piece.points, &other.points));
+            if hidden { piece.gap(other, 0.15) } else { None }
+        };
+        entwined(piece, other).or_else(cups).or_else(ends)
+    };
+    let mut best: Option<(f64, usize)> = None;
+    for (j, other) in pieces.iter().enumerate() {
+        let Some(other) = other else { continue };
+        // Crumbs of furniture go with it; nothing else does.
+        let apart = faults[k].is_some() || faults[j].is_some();
+        let gap = crumb(piece, other, hangs).or_else(|| if apart { None } else { joint(j, other) });
+        if let Some(gap) = gap
+            && best.is_none_or(|b| gap < b.0)
+        {
+            best = Some((gap, j));
         }
     }
+    best.map(|b| b.1)
 }
 
-/// The gap between two pieces of one thing; `None` when they are two things.
-fn belongs(small: &Piece, large: &Piece, _support: &Support) -> Option<f64> {
-    let within = small.outline.common(&large.outline).area() / small.outline.area().max(1e-9);
-    let slight = small.points.len() * 5 < large.points.len();
-    let hangs = small.bottom > 0.015 + 0.1 * large.top;
-    let reach = if within > 0.5 {
-        0.5 * large.size()
-    } else if slight && hangs {
-        0.03
-    } else if slight {
-        0.012
-    } else {
+/// Gap of a crumb: within the other's outline, or hanging, it may be wide.
+fn crumb(piece: &Piece, other: &Piece, hangs: bool) -> Option<f64> {
+    if piece.points.len() * 5 > other.points.len() {
         return None;
-    };
-    let gap = small.gap(large, reach);
-    gap.is_finite().then_some(gap)
+    }
+    let near = piece.gap(other, 0.04)?;
+    let high = piece.bottom > 0.015 + 0.1 * other.top;
+    (near < 0.012 || near < 0.03 && (high || hangs) || piece.within(other) > 0.5).then_some(near)
 }
 
-/// Why a piece is no object; `None` when it is one.
-fn fault(
+/// Gap of two pieces whose outlines overlap, when it is slight for their size.
+fn entwined(piece: &Piece, other: &Piece) -> Option<f64> {
+    let gap = piece.gap(other, 0.05 * piece.size().min(other.size()))?;
+    (piece.within(other).max(other.within(piece)) > 0.1).then_some(gap)
+}
+
+/// Whether two pieces are as high, as the two sides of a cup are.
+fn level(piece: &Piece, other: &Piece) -> bool {
+    (piece.top - other.top).abs() < 0.01 + 0.1 * piece.top.max(other.top)
+}
+
+/// Whether two pieces may be the ends of one thing: as high, and as wide across the line between.
+fn in_line(piece: &Piece, other: &Piece, ground: &Ground) -> bool {
+    if (piece.top - other.top).abs() > 0.008 {
+        return false;
+    }
+    let middle = |p: &Piece| {
+        let n = p.sample.len().max(1) as f64;
+        let feet = p.sample.iter().map(|q| ground.spot(q));
+        let sum = feet.fold([0.0; 2], |s, f| [s[0] + f[0], s[1] + f[1]]);
+        [sum[0] / n, sum[1] / n]
+    };
+    let (a, b) = (middle(piece), middle(other));
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let length = dx.hypot(dy).max(1e-9);
+    let across = |p: &Piece| {
+        p.sample.iter().map(|q| ground.spot(q)).fold([f64::MAX, f64::MIN], |r, f| {
+            let y = ((f[1] - a[1]) * dx - (f[0] - a[0]) * dy) / length;
+            [r[0].min(y), r[1].max(y)]
+        })
+    };
+    let (s, t) = (across(piece), across(other));
+    let slack = 0.015 + 0.1 * (s[1] - s[0]).max(t[1] - t[0]);
+    (s[0] - t[0]).abs() < slack && (s[1] - t[1]).abs() < slack
+}
+
+/// Why a piece cannot be an object, by its place and size; `None` when it can.
+fn misplaced(
     piece: &Piece,
     support: &Support,
     ground: &Ground,
     options: &SegmentOptions,
 ) -> Option<DropReason> {
-    if piece.points.len() < options.least_points || piece.size() < options.least_size {
-        return Some(DropReason::Speck);
-    }
     if piece.size() > options.largest_size {
         return Some(DropReason::TooLarge);
     }
-    let standing =
-        piece.sample.iter().filter(|p| support.outline.depth(&ground.spot(p)) > 0.01).count();
-    if standing * 2 < piece.sample.len() {
-        return Some(DropReason::OffSupport);
+    let inside = |p: &&Point| support.outline.depth(&ground.spot(p)) > EDGE;
+    let standing = piece.sample.iter().filter(inside).count();
+    (2 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
+}
+
+/// Why a whole thing is none; `None` when it is one.
+fn slight(
+    piece: &Piece,
+    support: &Support,
+    sight: &Sight,
+    image: Option<&Image<'_>>,
+    options: &SegmentOptions,
+) -> Option<DropReason> {
+    if piece.points.len() < options.least_points || piece.size() < options.least_size {
+        return Some(DropReason::Speck);
     }
-    None
+    let middle = piece.sample.get(piece.sample.len() / 2);
+    if middle.is_some_and(|p| piece.top < FLAT * support.margin(p, sight, options)) {
+        return Some(DropReason::Flat);
+    }
+    if image.is_some_and(|i| i.cut(&piece.points) > 0.5 * piece.size()) {
+        return Some(DropReason::CutOff);
+    }
+    let aloft = piece.size() < HANGING && piece.aloft();
+    let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points));
+    hangs.then_some(DropReason::Hanging)
 }

@@ -159,7 +159,8 @@ fn sample(jury: &[Reading], near: bool, random: &mut Stream) -> Option<(Directio
     let (ab, ac) = (b - a, c - a);
     let cross = ab.cross(&ac);
     // Slim triangles say nothing.
-    if !(cross.norm() > 0.1 * ab.norm() * ac.norm()) {
+    let slim = cross.norm() <= 0.1 * ab.norm() * ac.norm();
+    if slim {
         return None;
     }
     towards_eye(Direction::try_new(cross, 1e-300)?, a)

@@ -31,6 +31,12 @@ pub(crate) fn seen(p: &Point) -> bool {
     p.x.abs() < REACH && p.y.abs() < REACH && p.z.abs() < REACH
 }
 
+/// Width and height of an organised cloud; `None` for others and where they do not fit the points.
+pub(crate) fn grid(cloud: &PointCloud) -> Option<[usize; 2]> {
+    let fits = |[w, h]: &[usize; 2]| w.checked_mul(*h) == Some(cloud.points.len());
+    cloud.grid.filter(fits).filter(|[w, h]| *w > 1 && *h > 1)
+}
+
 /// Where the sensor is and how it is held.
 #[derive(Clone, Debug)]
 pub(crate) struct Sight {
@@ -61,7 +67,7 @@ impl Sight {
         };
         let mean: Vector = points().filter_map(|p| (p - eye).try_normalize(1e-9)).sum();
         let forward = Direction::try_new(mean, 1e-9).unwrap_or(Vector::z_axis());
-        let image = cloud.grid.and_then(|[w, _]| image_axes(cloud, sample, &eye, w));
+        let image = grid(cloud).and_then(|[w, _]| image_axes(cloud, sample, &eye, w));
         let across = |v: Vector| Direction::try_new(v - *forward * forward.dot(&v), 1e-9);
         let up = match image {
             Some((_, down)) => across(-down),

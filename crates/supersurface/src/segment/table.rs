@@ -105,7 +105,9 @@ impl Support {
         options.margin.unwrap_or_else(|| {
             let reading = Reading::new(p, sight, p);
             let width = reading.slope * self.plane.normal().dot(&reading.ray).abs() + reading.floor;
-            (3.0 * self.relative * width + 0.0015).max(0.003)
+            let range = reading.ray.norm().min(3.0);
+            // The last term is the camera's own distortion, which bends flat things with distance.
+            3.0 * self.relative * width + 0.001 + 0.0015 * range * range
         })
     }
 }

@@ -2,3 +2,4 @@
 
 mod floors;
 mod golden_shapes;
+mod segment;

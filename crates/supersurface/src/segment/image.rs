@@ -1,0 +1,169 @@
+//! What the image tells of two pieces: which hides which, and what is hollow.
+//!
+//! In an organised cloud, what lies between two pieces is either seen, and then they are apart, or hidden
+//! by something nearer. Three questions are asked of a piece's pixels:
+//! - is it *hollow*: does the chord between the two ends of its rows pass in front of it, as in the
+//!   inside of a cup?
+//! - does it *hang*: is the support seen right under it?
+//! - is the space between it and another piece *hidden* by a third?
+
+use crate::Point;
+use crate::segment::clusters::Class;
+
+/// An organised cloud and the piece that each pixel belongs to.
+#[derive(Clone, Debug)]
+pub(crate) struct Image<'a> {
+    points: &'a [Point],
+    class: &'a [Class],
+    width: usize,
+    eye: Point,
+    /// The piece of each pixel, or `NOBODY`.
+    owner: Vec<u32>,
+}
+
+/// The owner of pixels that are in no piece.
+const NOBODY: u32 = u32::MAX;
+/// Pixels without reading that are passed over under a piece.
+const SKIP: usize = 8;
+/// The border is this part of the image's width and height: cameras leave a strip without readings.
+const BORDER: usize = 40;
+/// A range that is nearer by this is in front, in metres.
+const IN_FRONT: f64 = 0.008;
+
+impl<'a> Image<'a> {
+    /// The image of a cloud; `None` unless it has `width` columns in every row.
+    pub(crate) fn new(
+        points: &'a [Point],
+        class: &'a [Class],
+        width: usize,
+        eye: Point,
+    ) -> Option<Self> {
+        let whole = width > 0 && points.len() == class.len() && points.len().is_multiple_of(width);
+        whole.then(|| Self { points, class, width, eye, owner: vec![NOBODY; points.len()] })
+    }
+
+    /// Says that the pixels belong to piece number `piece`.
+    pub(crate) fn own(&mut self, pixels: &[u32], piece: usize) {
+        for i in pixels {
+            if let Some(owner) = self.owner.get_mut(*i as usize) {
+                *owner = piece as u32;
+            }
+        }
+    }
+
+    fn range(&self, i: usize) -> f64 {
+        self.points.get(i).map_or(f64::NAN, |p| (p - self.eye).norm())
+    }
+
+    /// Share of a piece's rows (its pixels in ascending order) that curve away from the eye.
+    pub(crate) fn hollow(&self, pixels: &[u32]) -> f64 {
+        let (mut rows, mut sunk) = (0u32, 0u32);
+        for row in pixels.chunk_by(|a, b| *a as usize / self.width == *b as usize / self.width) {
+            let (Some(a), Some(b)) = (row.first(), row.last()) else { continue };
+            let (a, b) = (*a as usize, *b as usize);
+            let middle = (a + b) / 2;
+            let (Some(p), Some(q)) = (self.points.get(a), self.points.get(b)) else { continue };
+            if b - a < 8 || self.owner.get(middle) != self.owner.get(a) {
+                continue;
+            }
+            rows += 1;
+            let sag = self.range(middle) - 0.5 * (self.range(a) + self.range(b));
+            sunk += u32::from(sag > 0.002 + 0.08 * (p - q).norm());
+        }
+        if rows < 6 { 0.0 } else { f64::from(sunk) / f64::from(rows) }
+    }
+
+    /// The piece that hides this one along most of its lower edge, met within `reach` pixels under
+    /// it, if any.
+    pub(crate) fn before(&self, pixels: &[u32], reach: usize) -> Option<usize> {
+        let own = self.owner.get(*pixels.first()? as usize)?;
+        let mut fronts: Vec<usize> = Vec::new();
+        let mut columns = 0usize;
+        for i in self.lowest(pixels) {
+            columns += 1;
+            let mut under = self.under(i, reach);
+            let other = if reach > SKIP {
+                under.find(|j| self.owner[*j] != NOBODY && self.owner[*j] != *own)
+            } else {
+                under.find(|j| self.class[*j] != Class::Missing)
+            };
+            let hides =
+                |j: &usize| self.owner[*j] != NOBODY && self.range(*j) < self.range(i) - IN_FRONT;
+            fronts.extend(other.filter(hides).map(|j| self.owner[j] as usize));
+        }
+        fronts.sort_unstable();
+        let front = fronts.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?;
+        (2 * front.len() > columns).then(|| front[0])
+    }
+
+    /// True when under most of a piece's lower edge something farther is seen, not what it stands on.
+    pub(crate) fn hangs(&self, pixels: &[u32]) -> bool {
+        let (mut columns, mut free) = (0, 0);
+        for i in self.lowest(pixels) {
+            let reading = self.under(i, SKIP).find(|j| self.class[*j] != Class::Missing);
+            if let Some(j) = reading {
+                columns += 1;
+                free += usize::from(self.range(j) > self.range(i) + 2.0 * IN_FRONT);
+            }
+        }
+        columns >= 3 && 10 * free > 7 * columns
+    }
+
+    /// The lowest pixel of each column of a piece.
+    fn lowest(&self, pixels: &[u32]) -> impl Iterator<Item = usize> + use<> {
+        let mut lowest = vec![NOBODY; self.width];
+        for i in pixels {
+            lowest[*i as usize % self.width] = *i;
+        }
+        lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize)
+    }
+
+    /// The pixels under one, at most `reach` of them.
+    fn under(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> + '_ {
+        (1..=reach).map(move |k| i + k * self.width).take_while(|j| *j < self.class.len())
+    }
+
+    /// How much of a piece lies along the border of the image: the diagonal of the box of its points
+    /// there, in metres.
+    pub(crate) fn cut(&self, pixels: &[u32]) -> f64 {
+        let (w, h) = (self.width, self.points.len() / self.width);
+        let (mx, my) = (w / BORDER, h / BORDER);
+        let at_border = |i: &&u32| {
+            let (u, v) = (**i as usize % w, **i as usize / w);
+            u < mx || v < my || u + mx >= w || v + my >= h
+        };
+        let mut points =
+            pixels.iter().filter(at_border).filter_map(|i| self.points.get(*i as usize));
+        let Some(first) = points.next() else { return 0.0 };
+        let (low, high) = points.fold((*first, *first), |(l, h), p| (l.inf(p), h.sup(p)));
+        (high - low).norm()
+    }
+
+    /// True when in the rows that two pieces share, a third one that is nearer fills the space between.
+    pub(crate) fn hidden_between(&self, a: &[u32], b: &[u32]) -> bool {
+        let row = |i: &u32| *i as usize / self.width;
+        let (mut rows, mut hidden) = (0, 0);
+        let mut others = b.chunk_by(|i, j| row(i) == row(j)).peekable();
+        for own in a.chunk_by(|i, j| row(i) == row(j)) {
+            while others.next_if(|o| row(&o[0]) < row(&own[0])).is_some() {}
+            let Some(other) = others.peek().filter(|o| row(&o[0]) == row(&own[0])) else {
+                continue;
+            };
+            let ends = |r: &[u32]| (r[0] as usize, r[r.len() - 1] as usize);
+            let ((a0, a1), (b0, b1)) = (ends(own), ends(other));
+            let (from, to) = if a1 < b0 { (a1, b0) } else { (b1, a0) };
+            if from >= to {
+                continue;
+            }
+            rows += 1;
+            let limit = self.range(from).min(self.range(to)) - IN_FRONT;
+            let (mut seen, mut front) = (0, 0);
+            for j in (from + 1..to).filter(|j| self.class[*j] != Class::Missing) {
+                seen += 1;
+                front += usize::from(self.owner[j] != NOBODY && self.range(j) < limit);
+            }
+            hidden += usize::from(front > 0 && 10 * front > 8 * seen);
+        }
+        rows >= 5 && 5 * hidden > 4 * rows
+    }
+}
