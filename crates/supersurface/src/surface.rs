@@ -83,6 +83,13 @@ impl Implicit for Surface {
             Self::Supertoroid(s) => s.bounds(),
         }
     }
+
+    fn is_convex(&self) -> bool {
+        match self {
+            Self::Superellipsoid(s) => s.is_convex(),
+            Self::Supertoroid(s) => s.is_convex(),
+        }
+    }
 }
 
 impl SupportMap for Surface {

@@ -61,6 +61,10 @@ impl<S: Implicit> Implicit for Posed<S> {
         let extent = self.pose.rotation.to_rotation_matrix().matrix().abs() * half;
         [centre - extent, centre + extent]
     }
+
+    fn is_convex(&self) -> bool {
+        self.shape.is_convex()
+    }
 }
 
 impl<S: SupportMap> SupportMap for Posed<S> {

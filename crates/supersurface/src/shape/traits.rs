@@ -14,6 +14,12 @@ pub trait Implicit {
     /// Corners of an axis-aligned box (lowest, highest) that contains the solid, in metres.
     fn bounds(&self) -> [Point; 2];
 
+    /// True when the gauge is a convex function of the point, so that a ray meets the solid in one
+    /// interval. `false` promises nothing.
+    fn is_convex(&self) -> bool {
+        false
+    }
+
     /// True inside or on the surface.
     fn contains(&self, p: &Point) -> bool {
         self.gauge(p) <= 1.0

@@ -2,4 +2,7 @@
 
 mod floors;
 mod golden_shapes;
+mod hit;
+mod picture;
+mod scene;
 mod segment;

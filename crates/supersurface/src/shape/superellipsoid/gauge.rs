@@ -35,6 +35,11 @@ impl Implicit for Superellipsoid {
         let a = Vector::from(self.semi_axes);
         [Point::from(-a), Point::from(a)]
     }
+
+    /// Both norms are convex for exponents up to 2, and the outer one grows with the inner one.
+    fn is_convex(&self) -> bool {
+        self.exponents.iter().all(|e| *e <= 2.0)
+    }
 }
 
 impl Superellipsoid {

@@ -1,0 +1,91 @@
+//! Labels: words on a plate with a leader line to what they name, set so that none covers another.
+
+use super::image::Image;
+use super::text::{text_width, write};
+use super::{Colour, mix};
+
+/// Words that name a place of the picture, in pixels.
+#[derive(Clone, Debug)]
+pub(super) struct Label {
+    pub(super) anchor: [f64; 2],
+    pub(super) words: String,
+    pub(super) colour: Colour,
+}
+
+/// Left, top, right, bottom.
+type Plate = [f64; 4];
+
+/// Draws all labels that lie inside the image.
+pub(super) fn set(image: &mut Image, labels: &[Label]) {
+    let (width, height) = (image.width as f64, image.height as f64);
+    let size = (height / 55.0).clamp(8.0, 22.0).round();
+    let inside = |[x, y]: [f64; 2]| x >= 0.0 && y >= 0.0 && x < width && y < height;
+    let labels: Vec<&Label> = labels.iter().filter(|l| inside(l.anchor)).collect();
+    let mut taken: Vec<Plate> = Vec::new();
+    for label in &labels {
+        let plate = place(label, size, [width, height], &taken);
+        taken.push(plate);
+        leader(image, label, &plate, size);
+    }
+    for (label, [left, top, right, bottom]) in labels.iter().zip(&taken) {
+        let (at, extent) = ([*left, *top], [right - left, bottom - top]);
+        image.fill(at, extent, mix(label.colour, [255; 3], 0.92), 0.88);
+        image.fill(at, [0.35 * size, extent[1]], label.colour, 1.0);
+        let ink = mix(label.colour, [20, 22, 26], 0.75);
+        write(image, [left + 0.9 * size, top + 0.55 * size], &label.words, ink, size);
+    }
+}
+
+/// The free place nearest to the anchor among some above, beside and below it.
+fn place(label: &Label, size: f64, [width, height]: [f64; 2], taken: &[Plate]) -> Plate {
+    let [x, y] = label.anchor;
+    let (w, h) = (text_width(&label.words, size) + 1.6 * size, 2.2 * size);
+    let at = |i: usize| {
+        let away = 2.5 * size + 1.1 * h * (i / 4) as f64;
+        let (cx, cy) = match i % 4 {
+            0 => (x, y - away - 0.5 * h),
+            1 => (x + away + 0.5 * w, y - 0.6 * away),
+            2 => (x - away - 0.5 * w, y - 0.6 * away),
+            _ => (x, y + away + 0.5 * h),
+        };
+        let left = (cx - 0.5 * w).min(width - w - 4.0).max(4.0).round();
+        let top = (cy - 0.5 * h).min(height - h - 4.0).max(4.0).round();
+        [left, top, left + w, top + h]
+    };
+    let free = |plate: &Plate| {
+        let clear = |other: &Plate| {
+            plate[0] > other[2] + 3.0
+                || other[0] > plate[2] + 3.0
+                || plate[1] > other[3] + 3.0
+                || other[1] > plate[3] + 3.0
+        };
+        taken.iter().all(clear)
+    };
+    (0..32).map(at).find(free).unwrap_or_else(|| at(0))
+}
+
+/// The line from the plate to the anchor, and a dot there.
+fn leader(image: &mut Image, label: &Label, [left, top, right, bottom]: &Plate, size: f64) {
+    let [x, y] = label.anchor;
+    let from = [x.clamp(*left, *right), y.clamp(*top, *bottom)];
+    let (dx, dy) = (x - from[0], y - from[1]);
+    let length = dx.hypot(dy);
+    let ink = mix(label.colour, [0; 3], 0.3);
+    let (dot, pen) = (0.28 * size, 0.07 * size);
+    let reach = dot + 1.0;
+    let range = |a: f64, b: f64, most: usize| {
+        let clip = |v: f64| v.clamp(0.0, most as f64) as usize;
+        clip((a.min(b) - reach).floor())..clip((a.max(b) + reach).ceil())
+    };
+    for row in range(from[1], y, image.height) {
+        for column in range(from[0], x, image.width) {
+            let (px, py) = (column as f64 + 0.5 - from[0], row as f64 + 0.5 - from[1]);
+            let t = if length > 0.0 { (px * dx + py * dy) / (length * length) } else { 0.0 };
+            let t = t.clamp(0.0, 1.0);
+            let line = pen.max(0.6) - (px - t * dx).hypot(py - t * dy);
+            let end = dot - (px - dx).hypot(py - dy);
+            let cover = (line.max(end) + 0.5).clamp(0.0, 1.0);
+            image.blend(column, row, ink, cover);
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! What a depth camera sees of a scene: a ray a pixel against the bodies and the table's top.
+
+use crate::camera::{Camera, DepthImage};
+use crate::measure::first_hit;
+use crate::numeric::random::Stream;
+use crate::scene::{DepthNoise, Scene};
+use crate::shape::{Implicit, Posed, Ray};
+use crate::surface::Surface;
+use crate::{Direction, Point, Pose};
+
+/// A jump of depth between neighbours, relative to the depth, that counts as an edge.
+const JUMP: f64 = 0.015;
+
+/// A depth image with the truth about it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Look {
+    /// Depth along the optical axis in metres; NaN where there is no reading.
+    pub depth: DepthImage,
+    /// For each pixel: k for the body `bodies[k - 1]`, 0 for the table and where there is no reading.
+    pub labels: Vec<u32>,
+}
+
+/// A body as rays meet it: in its own frame, which its bounds fit tightly.
+struct Target<'a> {
+    body: &'a Posed<Surface>,
+    centre: Point,
+    radius: f64,
+}
+
+/// What the ray of a pixel meets.
+#[derive(Clone, Copy)]
+struct Seen {
+    depth: f64,
+    incidence: f64,
+    label: u32,
+}
+
+const NOTHING: Seen = Seen { depth: f64::INFINITY, incidence: 1.0, label: 0 };
+
+/// The depth image and labels of a scene for a camera whose optical frame stands at `camera_pose` in
+/// the world. Each pixel has its own random stream, so that the image depends on the seed alone.
+pub fn look(
+    scene: &Scene,
+    camera: &Camera,
+    camera_pose: &Pose,
+    noise: &DepthNoise,
+    seed: u64,
+) -> Look {
+    let [width, height] = camera.size();
+    let targets: Vec<Target<'_>> = scene.bodies.iter().map(|b| Target::new(&b.surface)).collect();
+    let pixel = |i: usize| {
+        let mut stream = Stream::new(seed, i as u64);
+        let mut aim = |at: usize| at as f64 + noise.lateral * stream.normal();
+        let along = camera.unproject(aim(i % width), aim(i / width));
+        see(scene, &targets, camera_pose, along)
+    };
+    let seen = gather(width * height, pixel);
+    let reading = |i: usize| {
+        let Some(Seen { depth, incidence, label }) = seen.get(i).copied() else {
+            return (f32::NAN, 0);
+        };
+        if !depth.is_finite() {
+            return (f32::NAN, 0);
+        }
+        let mut stream = Stream::new(!seed, i as u64);
+        let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
+        let z = noise.reading(depth, incidence, edge, &mut stream) as f32;
+        (z, if z.is_nan() { 0 } else { label })
+    };
+    let (depth, labels) = gather(width * height, reading).into_iter().unzip();
+    let depth = DepthImage::new([width, height], depth);
+    Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels }
+}
+
+/// All values of `f` in order, on all cores.
+#[cfg(feature = "parallel")]
+fn gather<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    use rayon::prelude::*;
+    (0..n).into_par_iter().with_min_len(1024).map(f).collect()
+}
+
+/// All values of `f` in order.
+#[cfg(not(feature = "parallel"))]
+fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
+    (0..n).map(f).collect()
+}
+
+impl<'a> Target<'a> {
+    fn new(body: &'a Posed<Surface>) -> Self {
+        let [low, high] = body.shape().bounds();
+        let centre = body.pose() * nalgebra::center(&low, &high);
+        Self { body, centre, radius: 0.5 * (high - low).norm() }
+    }
+
+    /// Distance along the ray and cosine of incidence, when nearer than `max`.
+    fn meet(&self, ray: &Ray, max: f64) -> Option<(f64, f64)> {
+        let to = self.centre - ray.origin;
+        let middle = to.dot(&ray.direction);
+        let aside = to.norm_squared() - middle * middle;
+        if aside > self.radius * self.radius || middle < -self.radius {
+            return None;
+        }
+        let pose = self.body.pose();
+        let local = Ray {
+            origin: pose.inverse_transform_point(&ray.origin),
+            direction: pose.inverse_transform_unit_vector(&ray.direction),
+        };
+        let hit = first_hit(self.body.shape(), &local, max)?;
+        Some((hit.distance, -hit.normal.dot(&local.direction)))
+    }
+}
+
+/// What a ray meets first; `along` is the point at depth 1 that it passes, in the optical frame.
+fn see(scene: &Scene, targets: &[Target<'_>], pose: &Pose, along: crate::Vector) -> Seen {
+    let length = along.norm();
+    let ray = Ray {
+        origin: Point::from(pose.translation.vector),
+        direction: Direction::new_normalize(pose.rotation * along),
+    };
+    let mut nearest = f64::INFINITY;
+    let mut seen = NOTHING;
+    let rise = scene.support.normal().dot(&ray.direction);
+    let t = -scene.support.height(&ray.origin) / rise;
+    let foot = ray.at(t);
+    if t > 0.0 && foot.x.abs() <= scene.half_size[0] && foot.y.abs() <= scene.half_size[1] {
+        nearest = t;
+        seen = Seen { depth: t / length, incidence: rise.abs(), label: 0 };
+    }
+    for (target, label) in targets.iter().zip(1..) {
+        if let Some((t, incidence)) = target.meet(&ray, nearest) {
+            nearest = t;
+            seen = Seen { depth: t / length, incidence: incidence.abs(), label };
+        }
+    }
+    seen
+}
+
+/// True when a neighbour is much nearer or farther.
+fn beside_a_jump(seen: &[Seen], i: usize, width: usize) -> bool {
+    let depth = |j: Option<usize>| j.and_then(|j| seen.get(j)).map_or(f64::NAN, |s| s.depth);
+    let here = depth(Some(i));
+    let column = i % width;
+    let neighbours = [
+        (column > 0).then(|| i - 1),
+        (column + 1 < width).then_some(i + 1),
+        i.checked_sub(width),
+        Some(i + width),
+    ];
+    neighbours.into_iter().any(|j| (depth(j) - here).abs() > JUMP * here)
+}
