@@ -17,8 +17,12 @@ pub(super) fn toroid_margin(ellipsoid: &Hypothesis, toroid: &Hypothesis, points:
 }
 
 /// True when the cloud shows the hole of a toroid: enough points lie on the inner half of the tube, none
-/// lies where the hole must be empty, and the hole is wider than the noise.
-pub(super) fn shows_hole(toroid: &Hypothesis, points: &[Vector]) -> bool {
+/// lies in the mouth of the hole (a floor farther in makes it a pot), and the hole is wider than the noise.
+pub(super) fn shows_hole(
+    toroid: &Hypothesis,
+    points: &[Vector],
+    viewpoint: Option<Vector>,
+) -> bool {
     let s = &toroid.parameters;
     if s.family != Family::Supertoroid {
         return false;
@@ -29,6 +33,9 @@ pub(super) fn shows_hole(toroid: &Hypothesis, points: &[Vector]) -> bool {
     if hole < 4.0 * toroid.mixture.scale || hole < 0.12 * outer {
         return false;
     }
+    // the side of the mid-plane on which the sensor stands; without one both count
+    let mouth =
+        viewpoint.map(|v| s.rotation.inverse_transform_vector(&(v - s.position)).z.signum());
     let (mut inner, mut blocked, mut inliers) = (0usize, 0usize, 0usize);
     for p in points {
         let q = s.rotation.inverse_transform_vector(&(p - s.position));
@@ -37,7 +44,8 @@ pub(super) fn shows_hole(toroid: &Hypothesis, points: &[Vector]) -> bool {
             (q.y / axes[1]).abs(),
             2.0 / s.exponents[1],
         );
-        if radius < 0.8 * (s.ring - 1.0) && q.z.abs() < 1.2 * axes[2] {
+        let before_floor = mouth.is_none_or(|m| m * q.z > 0.0);
+        if radius < 0.8 * (s.ring - 1.0) && q.z.abs() < 1.2 * axes[2] && before_floor {
             blocked += 1;
         }
         let d = distance::<false>(s, p, &mut [0.0; COUNT]);

@@ -27,6 +27,8 @@ const SHORTLIST: usize = 10;
 const KEPT: usize = 4;
 /// Share of points deep inside a convex body from which it may be hollow.
 const HOLLOW: f64 = 0.01;
+/// How far before a seen point nothing is, in normalised lengths.
+const BEFORE: f64 = 0.15;
 /// A piece stands on the support when the gap below it is less than this share of its size.
 const HOVERING: f64 = 0.8;
 /// A fit with a lesser share of inliers explains nothing.
@@ -98,15 +100,21 @@ impl Normalised {
             let mut heights: Vec<f64> = fine.iter().map(|p| normal.dot(p) + offset).collect();
             // a piece that hovers higher than it is large is not the top of something that stands there
             let standing = view.standing && quantile(&mut heights, 0.02) < HOVERING * sides.max();
-            Support { normal, offset, standing, tolerance: SUPPORT_TOLERANCE }
+            let highest = quantile(&mut heights, 0.995);
+            let above = view.viewpoint.is_some_and(|p| plane.height(&p) / scale > highest);
+            let top = above.then_some(highest);
+            Support { normal, offset, standing, top, tolerance: SUPPORT_TOLERANCE }
         });
-        let top = |s: Support| fine.iter().map(|p| s.normal.dot(p) + s.offset).fold(0.0, f64::max);
-        let tallest = support.filter(|s| s.standing).map_or(0.0, top);
+        let tallest = support.filter(|s| s.standing).and_then(|s| s.top).unwrap_or(0.0);
         let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
         let free = view.free.iter().map(|p| inward(&p.coords)).collect();
         let closed = outside.is_none().then(|| sides.iter().map(|s| s.max(0.1)).product());
         let reach = 0.55 * sides.max().max(tallest);
-        let terms = Terms { support, viewpoint: outside, free, closed, reach };
+        let before = outside.map_or(Vec::new(), |viewpoint| {
+            let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
+            fine.iter().map(nearer).collect()
+        });
+        let terms = Terms { support, viewpoint: outside, free, before, closed, reach };
         Ok(Self {
             centre,
             scale,
@@ -185,7 +193,7 @@ impl Normalised {
         }
         let toroid = self.best(Family::Supertoroid);
         let margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
-        if margin > 0.0 && shows_hole(&toroid, &self.points) {
+        if margin > 0.0 && shows_hole(&toroid, &self.points, self.terms.viewpoint) {
             (toroid, margin)
         } else {
             (ellipsoid, -margin)

@@ -16,6 +16,8 @@ pub(super) struct Support {
     /// True when the points come down to the plane: then the body touches it. Otherwise it only may not
     /// reach below.
     pub(super) standing: bool,
+    /// Height of the highest point that was seen, when the sensor stands higher: nothing hides a top.
+    pub(super) top: Option<f64>,
     /// Least distance that counts, in normalised lengths.
     pub(super) tolerance: f64,
 }
@@ -27,6 +29,9 @@ pub(super) struct Terms {
     pub(super) viewpoint: Option<Vector>,
     /// Points seen beside or behind the object: nothing lies between the viewpoint and them.
     pub(super) free: Vec<Vector>,
+    /// Places a little before the object's own points: nothing lies between the viewpoint and them either.
+    /// Only a body with a hole can hide its own far wall.
+    pub(super) before: Vec<Vector>,
     /// Volume of the cloud's box where the object was seen from all around. Then the points are a density on
     /// the whole surface, and its area enters the likelihood; on half seen bodies it must not.
     pub(super) closed: Option<f64>,
@@ -144,10 +149,18 @@ impl Terms {
 
     fn add_support(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
         let Some(support) = self.support else { return };
-        let (height, row) = lowest(s, &support);
+        let sigma = scale.max(support.tolerance);
+        let weight = 0.2 * points as f64 / (sigma * sigma);
+        let (height, row) = extreme(s, &support.normal, support.offset);
         if support.standing || height < 0.0 {
-            let sigma = scale.max(support.tolerance);
-            to.add(height, 0.2 * points as f64 / (sigma * sigma), &row);
+            to.add(height, weight, &row);
+        }
+        if let Some(top) = support.top {
+            // the highest point is the lowest of the other side
+            let (below, row) = extreme(s, &-support.normal, top - support.offset);
+            if below < 0.0 {
+                to.add(below, weight, &row);
+            }
         }
     }
 
@@ -155,9 +168,16 @@ impl Terms {
     pub(super) fn intrusions(&self, s: &Parameters, rays: usize, found: &mut Vec<Vector>) {
         found.clear();
         let Some(viewpoint) = self.viewpoint else { return };
-        let taken = self.free.len().min(rays);
-        let ends = (0..taken).map(|i| &self.free[i * self.free.len() / taken]);
-        found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
+        let mut look = |ends: &[Vector]| {
+            let taken = ends.len().min(rays);
+            let ends = (0..taken).map(|i| &ends[i * ends.len() / taken]);
+            found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
+        };
+        look(&self.free);
+        look(&self.free);
+        if s.family == Family::Supertoroid {
+            look(&self.before);
+        }
     }
 }
 
@@ -175,17 +195,17 @@ fn add_intrusions(s: &Parameters, at: &Beside<'_>, to: &mut Normal) {
     }
 }
 
-/// Height of the body's lowest point over the plane and its derivatives. By the envelope theorem the
-/// support point may be held while the parameters move.
-fn lowest(s: &Parameters, support: &Support) -> (f64, Row) {
-    let m = -(s.rotation.inverse_transform_vector(&support.normal));
+/// Least height of the body over the plane `normal · x + offset = 0` and its derivatives. By the envelope
+/// theorem the support point may be held while the parameters move.
+fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> (f64, Row) {
+    let m = -(s.rotation.inverse_transform_vector(normal));
     let p = support_point(s, &m);
-    let height = support.normal.dot(&s.position) + support.offset - m.dot(&p);
+    let height = normal.dot(&s.position) + offset - m.dot(&p);
     let mut row = [0.0; COUNT];
     let turn = m.cross(&p);
     for i in 0..3 {
         row[i] = -p[i] * m[i];
-        row[6 + i] = support.normal[i];
+        row[6 + i] = normal[i];
         row[9 + i] = turn[i];
     }
     if s.family == Family::Supertoroid {
