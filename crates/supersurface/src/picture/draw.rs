@@ -328,7 +328,7 @@ impl Picture {
         }
         let occupied = cells.iter().filter(|c| **c).count() as f64;
         let spacing = CELL * (occupied / count.max(1) as f64).sqrt() / SAMPLES as f64;
-        (1.5 * spacing).clamp(1.5, 6.0)
+        (1.7 * spacing).clamp(1.5, 6.0)
     }
 }
 
