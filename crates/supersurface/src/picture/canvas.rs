@@ -1,13 +1,19 @@
 //! Samples with depth: triangles, lines and discs in, pixels out.
 //!
 //! There are 2 x 2 samples a pixel, in two layers. The opaque layer keeps the nearest colour; the
-//! veil keeps the nearest translucent colour and lies over the opaque one where it is nearer.
+//! veil keeps the nearest translucent colour and lies over the opaque one where it is nearer. Dots are
+//! lit by their own depths when the picture is finished, and noise of a percent of the depth
+//! does not bring a dot before a veil: a cloud shows evenly through the surface fitted to it.
 
 use super::image::Image;
+use super::relief::relief;
 use super::{Colour, mix};
 
 /// Samples along each side of a pixel.
 pub(super) const SAMPLES: usize = 2;
+
+/// Relative error of depth that is taken for noise of a cloud.
+const DOT_NOISE: f32 = 0.008;
 
 /// A corner on the canvas: position in samples and the inverse of depth, which is linear on it.
 #[derive(Clone, Copy, Debug)]
@@ -19,12 +25,20 @@ pub(super) struct Corner {
     pub(super) colour: [f64; 3],
 }
 
+/// The nearest opaque thing at a sample; inverse depth 0 for none.
+#[derive(Clone, Copy, Debug)]
+struct Opaque {
+    inverse: f32,
+    colour: Colour,
+    dot: bool,
+}
+
 /// The two layers.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas {
     pub(super) width: usize,
     pub(super) height: usize,
-    opaque: Vec<(f32, Colour)>,
+    opaque: Vec<Opaque>,
     veil: Vec<(f32, Colour, u8)>,
 }
 
@@ -36,7 +50,7 @@ impl Canvas {
         Self {
             width,
             height,
-            opaque: vec![(0.0, [0; 3]); width * height],
+            opaque: vec![Opaque { inverse: 0.0, colour: [0; 3], dot: false }; width * height],
             veil: vec![(0.0, [0; 3], 0); width * height],
         }
     }
@@ -51,11 +65,7 @@ impl Canvas {
     #[inline]
     fn put(&mut self, at: usize, inverse: f32, colour: Colour, alpha: u8) {
         if alpha == u8::MAX {
-            if let Some(sample) = self.opaque.get_mut(at)
-                && inverse > sample.0
-            {
-                *sample = (inverse, colour);
-            }
+            self.cover(at, Opaque { inverse, colour, dot: false });
         } else if let Some(sample) = self.veil.get_mut(at)
             && inverse > sample.0
         {
@@ -63,16 +73,26 @@ impl Canvas {
         }
     }
 
+    #[inline]
+    fn cover(&mut self, at: usize, thing: Opaque) {
+        if let Some(sample) = self.opaque.get_mut(at)
+            && thing.inverse > sample.inverse
+        {
+            *sample = thing;
+        }
+    }
+
     /// A round dot of `radius` samples.
     pub(super) fn disc(&mut self, centre: &Corner, radius: f64, colour: Colour) {
         let Corner { x, y, inverse, .. } = *centre;
+        let dot = Opaque { inverse: inverse as f32, colour, dot: true };
         let columns = Self::span(x - radius, x + radius, self.width);
         for row in Self::span(y - radius, y + radius, self.height) {
             let dy = row as f64 + 0.5 - y;
             for column in columns.clone() {
                 let dx = column as f64 + 0.5 - x;
                 if dx * dx + dy * dy <= radius * radius {
-                    self.put(row * self.width + column, inverse as f32, colour, u8::MAX);
+                    self.cover(row * self.width + column, dot);
                 }
             }
         }
@@ -120,17 +140,19 @@ impl Canvas {
         self.triangle([p, r, s], alpha);
     }
 
-    /// The picture over a background that depends on the row in [0, 1].
-    pub(super) fn finish(&self, background: impl Fn(f64) -> Colour) -> Image {
+    /// The picture over a background that depends on the row in [0, 1]; `focal` in pixels.
+    pub(super) fn finish(&self, focal: f64, background: impl Fn(f64) -> Colour) -> Image {
         let (width, height) = (self.width / SAMPLES, self.height / SAMPLES);
+        let light = relief(&self.dots(width, height), width, focal);
         let mut pixels = Vec::with_capacity(3 * width * height);
         for y in 0..height {
             let behind = background((y as f64 + 0.5) / height as f64);
             for x in 0..width {
+                let light = light.get(y * width + x).copied().unwrap_or(1.0);
                 let mut sum = [0u32; 3];
                 for i in 0..SAMPLES * SAMPLES {
                     let (column, row) = (x * SAMPLES + i % SAMPLES, y * SAMPLES + i / SAMPLES);
-                    let colour = self.sample(column, row, behind);
+                    let colour = self.sample(column, row, light, behind);
                     for (s, c) in sum.iter_mut().zip(colour) {
                         *s += u32::from(c);
                     }
@@ -142,23 +164,59 @@ impl Canvas {
         Image { width, height, pixels }
     }
 
+    /// Share of a rectangle (left, top, right, bottom in pixels) on which something other than dots was
+    /// drawn.
+    pub(super) fn busy(&self, [left, top, right, bottom]: &[f64; 4]) -> f64 {
+        let scale = SAMPLES as f64;
+        let (mut busy, mut count) = (0usize, 0usize);
+        for row in Self::span(top * scale, bottom * scale, self.height).step_by(SAMPLES) {
+            for column in Self::span(left * scale, right * scale, self.width).step_by(SAMPLES) {
+                let at = row * self.width + column;
+                let veiled = self.veil.get(at).is_some_and(|v| v.0 > 0.0);
+                let drawn = self.opaque.get(at).is_some_and(|o| o.inverse > 0.0 && !o.dot);
+                busy += usize::from(veiled || drawn);
+                count += 1;
+            }
+        }
+        busy as f64 / count.max(1) as f64
+    }
+
+    /// Inverse depth of the nearest dot in each pixel, 0 where there is none.
+    fn dots(&self, width: usize, height: usize) -> Vec<f32> {
+        let mut dots = vec![0.0f32; width * height];
+        for (i, sample) in self.opaque.iter().enumerate().filter(|(_, s)| s.dot) {
+            let (x, y) = (i % self.width / SAMPLES, i / self.width / SAMPLES);
+            if let Some(dot) = dots.get_mut(y * width + x) {
+                *dot = dot.max(sample.inverse);
+            }
+        }
+        dots
+    }
+
     /// One sample: the opaque layer with its edges darkened, and the veil over it.
-    fn sample(&self, column: usize, row: usize, behind: Colour) -> Colour {
+    fn sample(&self, column: usize, row: usize, light: f32, behind: Colour) -> Colour {
         let at = row * self.width + column;
         let Some((opaque, veil)) = self.opaque.get(at).zip(self.veil.get(at)) else {
             return behind;
         };
-        let below = if opaque.0 > 0.0 {
-            mix(opaque.1, [0; 3], self.shadow(column, row, opaque.0))
+        let below = if opaque.inverse > 0.0 {
+            let light = if opaque.dot { light } else { 1.0 };
+            let light = light * self.outline(column, row, opaque.inverse);
+            opaque.colour.map(|c| (f32::from(c) * light) as u8)
         } else {
             behind
         };
-        if veil.0 > opaque.0 { mix(below, veil.1, f64::from(veil.2) / 255.0) } else { below }
+        let tolerance = if opaque.dot { 1.0 - DOT_NOISE } else { 1.0 };
+        if veil.0 > opaque.inverse * tolerance {
+            mix(below, veil.1, f64::from(veil.2) / 255.0)
+        } else {
+            below
+        }
     }
 
-    /// How much nearer the neighbours are (eye-dome lighting, Boucheny 2009): darkness in [0, 1] that
-    /// shows the relief of a cloud without normals.
-    fn shadow(&self, column: usize, row: usize, inverse: f32) -> f64 {
+    /// Darkness beside what is much nearer (eye-dome lighting, Boucheny 2009): brightness in (0, 1]
+    /// that sets things off from what lies behind them.
+    fn outline(&self, column: usize, row: usize, inverse: f32) -> f32 {
         const REACH: usize = 3;
         let mut nearer = 0.0f32;
         for (dx, dy) in [(0, 1), (2, 1), (1, 0), (1, 2)] {
@@ -167,10 +225,10 @@ impl Canvas {
                 continue;
             }
             let at = (y - REACH) * self.width + (x - REACH);
-            if let Some((other, _)) = self.opaque.get(at) {
-                nearer += (other / inverse - 1.0).clamp(0.0, 0.03);
+            if let Some(other) = self.opaque.get(at) {
+                nearer += (other.inverse / inverse - 1.0 - DOT_NOISE).clamp(0.0, 0.03);
             }
         }
-        0.65 * (1.0 - (-22.0 * f64::from(nearer)).exp())
+        1.0 / (1.0 + 20.0 * nearer)
     }
 }

@@ -71,17 +71,17 @@ impl Picture {
         if let (Some(tail), Some(tip)) = (self.corner(a), self.corner(b)) {
             let (dx, dy) = (tip.x - tail.x, tip.y - tail.y);
             let length = dx.hypot(dy);
-            let head = 3.2 * width * SAMPLES as f64;
+            let head = 4.0 * width * SAMPLES as f64;
             if length > 0.0 {
                 let (ux, uy) = (dx / length * head, dy / length * head);
                 let colour = colour.map(f64::from);
                 let shift = |along: f64, aside: f64| Corner {
                     x: tip.x + along * ux - aside * uy,
                     y: tip.y + along * uy + aside * ux,
-                    inverse: tip.inverse * 1.001,
+                    inverse: tip.inverse * 1.01,
                     colour,
                 };
-                let [p, q, r] = [shift(0.6, 0.0), shift(-0.6, 0.5), shift(-0.6, -0.5)];
+                let [p, q, r] = [shift(0.0, 0.0), shift(-1.2, 0.55), shift(-1.2, -0.55)];
                 self.canvas.triangle([&p, &q, &r], u8::MAX);
             }
         }
@@ -221,8 +221,12 @@ impl Picture {
 
     /// The pixels of all that was drawn, over a light background.
     pub fn finish(&self) -> Image {
-        let mut image = self.canvas.finish(|t| mix([252, 253, 254], [222, 227, 233], t));
-        set(&mut image, &self.labels);
+        let focal = self.focal / SAMPLES as f64;
+        let mut image = self.canvas.finish(focal, |t| mix([252, 253, 254], [222, 227, 233], t));
+        let texts = self.texts.iter().map(|([x, y], words, _, size)| {
+            [*x, *y, x + text::text_width(words, *size), y + 1.3 * size]
+        });
+        set(&mut image, &self.labels, texts.collect(), |plate| self.canvas.busy(plate));
         for (at, words, colour, size) in &self.texts {
             text::write(&mut image, *at, words, *colour, *size);
         }
@@ -247,7 +251,7 @@ impl Picture {
     }
 
     /// A triangle, cut at the near plane.
-    fn triangle(&mut self, corners: [Placed; 3], alpha: u8) {
+    pub(super) fn triangle(&mut self, corners: [Placed; 3], alpha: u8) {
         let corners = corners.map(|(p, colour)| (self.place(&p), colour));
         if !corners.iter().all(|(p, _)| finite(p)) {
             return;
@@ -294,15 +298,14 @@ impl Picture {
         self.canvas.line(&a, &b, width * SAMPLES as f64, alpha);
     }
 
-    /// A colour under a light from the viewer's upper left, with a highlight of `gloss`.
-    fn shade(&self, colour: Colour, normal: &Vector, gloss: f64) -> [f64; 3] {
+    /// A colour under the picture's light, with a highlight of `gloss`.
+    pub(super) fn shade(&self, colour: Colour, normal: &Vector, gloss: f64) -> [f64; 3] {
         let n = self.view.pose.rotation.inverse_transform_vector(normal);
         let n = n.try_normalize(1e-12).unwrap_or(-Vector::z());
-        let light = Vector::new(-0.45, -0.65, -0.62).normalize();
-        let diffuse = 0.50 + 0.55 * n.dot(&light).max(0.0) + 0.10 * (-n.z).max(0.0);
         // half way between the light and the viewer; the 16th power by squaring
-        let half = (light - Vector::z()).normalize();
+        let half = (light() - Vector::z()).normalize();
         let shine = (0..4).fold(n.dot(&half).max(0.0), |v, _| v * v);
+        let diffuse = diffuse(&n);
         colour.map(|c| (f64::from(c) * diffuse + 255.0 * gloss * shine).clamp(0.0, 255.0))
     }
 
@@ -325,8 +328,18 @@ impl Picture {
         }
         let occupied = cells.iter().filter(|c| **c).count() as f64;
         let spacing = CELL * (occupied / count.max(1) as f64).sqrt() / SAMPLES as f64;
-        (1.5 * spacing).clamp(1.5, 6.0)
+        (1.7 * spacing).clamp(1.5, 6.0)
     }
+}
+
+/// Where the light comes from in the viewer's frame: the upper left behind the viewer.
+fn light() -> Vector {
+    Vector::new(-0.42, -0.58, -0.70).normalize()
+}
+
+/// Brightness of a surface with a unit normal in the viewer's frame.
+pub(super) fn diffuse(normal: &Vector) -> f64 {
+    0.54 + 0.50 * normal.dot(&light()).max(0.0) + 0.10 * (-normal.z).max(0.0)
 }
 
 /// The point of a segment on the near plane.

@@ -13,21 +13,27 @@ pub(super) struct Label {
 }
 
 /// Left, top, right, bottom.
-type Plate = [f64; 4];
+pub(super) type Plate = [f64; 4];
 
-/// Draws all labels that lie inside the image.
-pub(super) fn set(image: &mut Image, labels: &[Label]) {
+/// Draws all labels that lie inside the image, off the plates that are taken and, where it can be, off
+/// what is busy (a share of a plate in [0, 1]).
+pub(super) fn set(
+    image: &mut Image,
+    labels: &[Label],
+    mut taken: Vec<Plate>,
+    busy: impl Fn(&Plate) -> f64,
+) {
+    let others = taken.len();
     let (width, height) = (image.width as f64, image.height as f64);
     let size = (height / 55.0).clamp(8.0, 22.0).round();
     let inside = |[x, y]: [f64; 2]| x >= 0.0 && y >= 0.0 && x < width && y < height;
     let labels: Vec<&Label> = labels.iter().filter(|l| inside(l.anchor)).collect();
-    let mut taken: Vec<Plate> = Vec::new();
     for label in &labels {
-        let plate = place(label, size, [width, height], &taken);
+        let plate = place(label, size, [width, height], &taken, &busy);
         taken.push(plate);
         leader(image, label, &plate, size);
     }
-    for (label, [left, top, right, bottom]) in labels.iter().zip(&taken) {
+    for (label, [left, top, right, bottom]) in labels.iter().zip(taken.iter().skip(others)) {
         let (at, extent) = ([*left, *top], [right - left, bottom - top]);
         image.fill(at, extent, mix(label.colour, [255; 3], 0.92), 0.88);
         image.fill(at, [0.35 * size, extent[1]], label.colour, 1.0);
@@ -36,32 +42,46 @@ pub(super) fn set(image: &mut Image, labels: &[Label]) {
     }
 }
 
-/// The free place nearest to the anchor among some above, beside and below it.
-fn place(label: &Label, size: f64, [width, height]: [f64; 2], taken: &[Plate]) -> Plate {
+/// The place near the anchor, in eight directions and four distances, that covers no other plate and
+/// least of what is drawn.
+fn place(
+    label: &Label,
+    size: f64,
+    [width, height]: [f64; 2],
+    taken: &[Plate],
+    busy: impl Fn(&Plate) -> f64,
+) -> Plate {
     let [x, y] = label.anchor;
     let (w, h) = (text_width(&label.words, size) + 1.6 * size, 2.2 * size);
-    let at = |i: usize| {
-        let away = 2.5 * size + 1.1 * h * (i / 4) as f64;
-        let (cx, cy) = match i % 4 {
-            0 => (x, y - away - 0.5 * h),
-            1 => (x + away + 0.5 * w, y - 0.6 * away),
-            2 => (x - away - 0.5 * w, y - 0.6 * away),
-            _ => (x, y + away + 0.5 * h),
-        };
-        let left = (cx - 0.5 * w).min(width - w - 4.0).max(4.0).round();
-        let top = (cy - 0.5 * h).min(height - h - 4.0).max(4.0).round();
-        [left, top, left + w, top + h]
-    };
-    let free = |plate: &Plate| {
-        let clear = |other: &Plate| {
-            plate[0] > other[2] + 3.0
-                || other[0] > plate[2] + 3.0
-                || plate[1] > other[3] + 3.0
-                || other[1] > plate[3] + 3.0
-        };
-        taken.iter().all(clear)
-    };
-    (0..32).map(at).find(free).unwrap_or_else(|| at(0))
+    let mut best = (f64::INFINITY, [0.0; 4]);
+    for ring in 0..4 {
+        let away = size * (1.8 + 1.6 * f64::from(ring));
+        for (dx, dy) in [(0, -1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (1, 1), (-1, 1)] {
+            let (dx, dy) = (f64::from(dx), f64::from(dy));
+            let left = x - 0.5 * w + dx * (away + 0.5 * w);
+            let top = y - 0.5 * h + dy * (away + 0.5 * h);
+            let left = left.min(width - w - 4.0).max(4.0).round();
+            let top = top.min(height - h - 4.0).max(4.0).round();
+            let plate = [left, top, left + w, top + h];
+            let over = taken.iter().filter(|other| touch(&plate, other)).count() as f64;
+            let hidden = touch(&plate, &[x, y, x, y]) as u8;
+            let below = if dy > 0.0 { 0.25 } else { 0.0 };
+            let cost = 10.0 * over
+                + 5.0 * f64::from(hidden)
+                + 3.0 * busy(&plate)
+                + 0.2 * f64::from(ring)
+                + below;
+            if cost < best.0 {
+                best = (cost, plate);
+            }
+        }
+    }
+    best.1
+}
+
+/// True when two plates come nearer than 3 pixels.
+fn touch(a: &Plate, b: &Plate) -> bool {
+    a[0] <= b[2] + 3.0 && b[0] <= a[2] + 3.0 && a[1] <= b[3] + 3.0 && b[1] <= a[3] + 3.0
 }
 
 /// The line from the plate to the anchor, and a dot there.

@@ -20,8 +20,10 @@
 mod canvas;
 mod draw;
 mod font;
+mod gripper;
 mod image;
 mod label;
+mod relief;
 mod tessellate;
 mod text;
 mod view;

@@ -36,7 +36,7 @@ impl Default for DepthNoise {
             step: 1.0 / 28.0,
             lateral: 0.3,
             grazing: 0.09,
-            edge: 0.45,
+            edge: 0.35,
             dropout: 0.002,
         }
     }
