@@ -33,20 +33,39 @@ pub(crate) struct GraspArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "intrinsics")]
     pub(crate) camera: Option<PathBuf>,
     /// Intrinsics of a depth image in pixels, instead of --camera.
-    #[arg(long, value_name = "FX,FY,CX,CY", value_delimiter = ',', num_args = 1, requires = "depth_scale")]
+    #[arg(
+        long,
+        value_name = "FX,FY,CX,CY",
+        value_delimiter = ',',
+        num_args = 1,
+        requires = "depth_scale"
+    )]
     pub(crate) intrinsics: Option<Vec<f64>>,
     /// Units of the depth image a metre: 1000 for millimetres.
     #[arg(long, value_name = "UNITS")]
     pub(crate) depth_scale: Option<f64>,
     /// Lens distortion k1,k2,p1,p2,k3,k4,k5,k6 (the last may be left out), with --intrinsics.
-    #[arg(long, value_name = "D", value_delimiter = ',', num_args = 1, allow_hyphen_values = true, requires = "intrinsics")]
+    #[arg(
+        long,
+        value_name = "D",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true,
+        requires = "intrinsics"
+    )]
     pub(crate) distortion: Option<Vec<f64>>,
     /// Unit of the cloud's coordinates.
     #[arg(long, value_enum, default_value_t = Units::M)]
     pub(crate) units: Units,
     /// Pose of the cloud's frame in the robot's frame: X,Y,Z,QW,QX,QY,QZ (metres, unit quaternion) or
     /// the 16 numbers of a matrix, row by row. All results are then in the robot's frame.
-    #[arg(long, value_name = "POSE", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "POSE",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true
+    )]
     pub(crate) camera_pose: Option<Vec<f64>>,
     /// Where the sensor stood, in the cloud's frame and metres; `none` for a cloud seen from all around.
     /// The default is the origin of the cloud's frame.
@@ -124,6 +143,13 @@ pub(crate) enum Units {
     Cm,
     /// Millimetres.
     Mm,
+    /// Tenths of millimetres.
+    #[value(name = "0.1mm")]
+    TenthMm,
+    /// Micrometres.
+    Um,
+    /// Kilometres.
+    Km,
 }
 
 impl Units {
@@ -133,6 +159,9 @@ impl Units {
             Self::M => 1.0,
             Self::Cm => 1e-2,
             Self::Mm => 1e-3,
+            Self::TenthMm => 1e-4,
+            Self::Um => 1e-6,
+            Self::Km => 1e3,
         }
     }
 }

@@ -43,6 +43,15 @@ impl Progress {
         }
     }
 
+    /// Says what was noticed; the run goes on.
+    pub(crate) fn warn(&self, warning: &str) {
+        self.bar.suspend(|| {
+            let line = format!("warning: {warning}\n");
+            // a closed standard error is no reason to stop
+            let _ = std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes());
+        });
+    }
+
     fn end(&mut self) {
         if let Some(name) = self.running.take() {
             self.times.push((name, self.began.elapsed().as_secs_f64()));

@@ -95,7 +95,9 @@ fn grasp(out: &mut String, rank: usize, g: &Grasp) {
     let width = match (g.opening > 0.0, g.inside) {
         (false, _) => "suction".to_owned(),
         (true, false) => format!("opening {:.0} mm", 1e3 * g.opening),
-        (true, true) => format!("inside, {:.0} to {:.0} mm", 1e3 * g.opening, 1e3 * g.contact_width),
+        (true, true) => {
+            format!("inside, {:.0} to {:.0} mm", 1e3 * g.opening, 1e3 * g.contact_width)
+        }
     };
     let _ = writeln!(
         out,

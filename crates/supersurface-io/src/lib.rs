@@ -1,1 +1,45 @@
-//! Files for supersurface.
+//! Files for supersurface: point clouds and depth images in, labels, grasps, pictures and reports out.
+//!
+//! | file | direction | by |
+//! |---|---|---|
+//! | PCD, PLY, text, depth PNG | in | [`read`] |
+//! | camera intrinsics (JSON) | in | [`read_camera`] |
+//! | instance mask (PNG) | in | [`read_mask`] |
+//! | gripper (TOML) | in | [`read_gripper`] |
+//! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
+//!
+//! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
+//! before they look at the file, and refuse files that depth cameras and PCL write every day (padding
+//! fields, carriage returns, page-padded compressed data, integer coordinates). Here every length is
+//! checked against the bytes that are there, and an error names the file, the place and the mend.
+//!
+//! ```
+//! let text = "0.1 0.2 0.3\n0.4 0.5 0.6\n";
+//! let read = supersurface_io::parse("corner.xyz", text.as_bytes(), &Default::default())?;
+//! assert_eq!(read.cloud.points.len(), 2);
+//! # Ok::<(), supersurface_io::ReadError>(())
+//! ```
+
+mod bytes;
+mod camera_json;
+mod depth_png;
+mod error;
+mod grasps_json;
+mod gripper;
+mod npy;
+mod pcd;
+mod ply;
+mod read;
+mod report_json;
+mod text;
+mod write;
+
+pub use camera_json::{DepthCamera, read_camera};
+pub use depth_png::read_mask;
+pub use error::{ReadError, WriteError};
+pub use grasps_json::write_grasps;
+pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
+pub use npy::write_labels;
+pub use read::{Read, ReadOptions, parse, read};
+pub use report_json::{ReportHead, failure_json, report_json};
+pub use write::write_png;

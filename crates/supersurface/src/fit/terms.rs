@@ -174,7 +174,6 @@ impl Terms {
             found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
         };
         look(&self.free);
-        look(&self.free);
         if s.family == Family::Supertoroid {
             look(&self.before);
         }

@@ -44,3 +44,18 @@ pub enum Refusal {
         available: f64,
     },
 }
+
+/// stub
+#[derive(Clone, Debug, Default)]
+pub struct GraspOptions {}
+/// stub
+#[derive(Clone, Debug)]
+pub struct Surroundings<'a> { _c: &'a crate::cloud::PointCloud }
+impl<'a> Surroundings<'a> {
+    /// stub
+    pub fn new(c: &'a crate::cloud::PointCloud, _s: &'a crate::segment::Segmentation) -> Self { Self { _c: c } }
+}
+/// stub
+pub fn plan(_object: usize, _fit: Option<&crate::fit::Fit>, _around: &Surroundings<'_>, _g: &Gripper, _o: &GraspOptions) -> Result<Vec<Grasp>, Refusal> {
+    Err(Refusal::TooWide { needed: 0.0, available: 0.0 })
+}

@@ -1,0 +1,123 @@
+//! From the command line to a cloud: file, camera, units, frame, viewpoint, given objects.
+
+use supersurface::cloud::{PointCloud, unit_hint};
+use supersurface::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
+use supersurface::pipeline::Objects;
+use supersurface::{Point, Pose, Vector};
+use supersurface_io::{DepthCamera, Read, ReadOptions, read_camera, read_mask};
+
+use crate::args::GraspArgs;
+use crate::exit::Failure;
+use crate::outputs::Source;
+
+/// Reads the input and puts it into metres and the frame that was asked for.
+pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
+    let options = ReadOptions { instances: args.instances.clone(), camera: camera(args)? };
+    let Read { mut cloud, mut warnings, .. } =
+        supersurface_io::read(&args.input, &options).map_err(Failure::input)?;
+    let name = args.input.display().to_string();
+    if let Some(mask) = &args.mask {
+        cloud.labels = read_mask(mask, cloud.grid).map_err(Failure::input)?;
+    }
+    let factor = args.units.metres();
+    if factor != 1.0 {
+        cloud = cloud.scaled(factor);
+    }
+    if let Some(hint) = unit_hint(&cloud) {
+        warnings.push(format!("this looks like {hint}: pass --units {}", hint.sign()));
+    }
+    if let Some(text) = &args.viewpoint {
+        cloud.viewpoint = viewpoint(text)?;
+    }
+    let mut frame = "cloud";
+    if let Some(numbers) = &args.camera_pose {
+        cloud = cloud.moved(&pose(numbers)?);
+        frame = "robot";
+    }
+    let objects = if args.segmented {
+        Objects::Whole
+    } else if args.instances.is_some() || args.mask.is_some() {
+        Objects::Given
+    } else {
+        Objects::Find
+    };
+    check(&name, &cloud)?;
+    Ok(Source { name, cloud, frame, warnings, objects })
+}
+
+fn check(name: &str, cloud: &PointCloud) -> Result<(), Failure> {
+    if cloud.points.is_empty() {
+        return Err(Failure::input(format!(
+            "{name}: the cloud is empty: there are no points in it"
+        )));
+    }
+    Ok(())
+}
+
+fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
+    if let Some(file) = &args.camera {
+        let mut camera = read_camera(file).map_err(Failure::input)?;
+        if let Some(scale) = args.depth_scale {
+            camera.depth_scale = scale;
+        }
+        return Ok(Some(camera));
+    }
+    let Some(numbers) = &args.intrinsics else { return Ok(None) };
+    let [fx, fy, cx, cy] = numbers[..] else {
+        let problem =
+            format!("--intrinsics needs FX,FY,CX,CY; {} numbers were given", numbers.len());
+        return Err(Failure::usage(problem));
+    };
+    let Some(depth_scale) = args.depth_scale else {
+        return Err(Failure::usage("--intrinsics needs --depth-scale (1000 for millimetres)"));
+    };
+    let mut distortion = [0.0; 8];
+    for (to, from) in distortion.iter_mut().zip(args.distortion.iter().flatten()) {
+        *to = *from;
+    }
+    let (focal, centre) = ([fx, fy], [cx, cy]);
+    Ok(Some(DepthCamera { size: None, focal, centre, distortion, depth_scale }))
+}
+
+fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
+    if text == "none" {
+        return Ok(None);
+    }
+    let numbers: Option<Vec<f64>> = text.split(',').map(|w| w.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) => {
+            Ok(Some(Point::new(*x, *y, *z)))
+        }
+        _ => Err(Failure::usage(format!("--viewpoint {text:?}: X,Y,Z in metres, or none"))),
+    }
+}
+
+/// A pose from X,Y,Z,QW,QX,QY,QZ or from the 16 numbers of a matrix, row by row.
+fn pose(numbers: &[f64]) -> Result<Pose, Failure> {
+    let wrong = |problem: String| Failure::usage(format!("--camera-pose: {problem}"));
+    if !numbers.iter().all(|v| v.is_finite()) {
+        return Err(wrong("a number is not finite".into()));
+    }
+    let (translation, rotation) = match numbers {
+        [x, y, z, qw, qx, qy, qz] => {
+            let q = Quaternion::new(*qw, *qx, *qy, *qz);
+            if (q.norm() - 1.0).abs() > 1e-3 {
+                return Err(wrong(format!("the quaternion's length is {:.4}, not 1", q.norm())));
+            }
+            (Vector::new(*x, *y, *z), UnitQuaternion::from_quaternion(q))
+        }
+        m if m.len() == 16 => {
+            let r = Matrix3::from_fn(|i, j| m[4 * i + j]);
+            let skew = (r.transpose() * r - Matrix3::identity()).amax();
+            if skew > 1e-3 || r.determinant() < 0.0 || m[12..] != [0.0, 0.0, 0.0, 1.0] {
+                return Err(wrong(
+                    "the matrix is no rigid pose (rows of rotation and translation)".into(),
+                ));
+            }
+            let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&r));
+            (Vector::new(m[3], m[7], m[11]), turn)
+        }
+        _ => return Err(wrong(format!("{} numbers: 7 or 16 are needed", numbers.len()))),
+    };
+    Ok(Pose::from_parts(translation.into(), rotation))
+}

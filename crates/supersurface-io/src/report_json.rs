@@ -1,0 +1,237 @@
+//! The report as JSON, for programs: format `supersurface-report`, version 1.
+//!
+//! Lengths are metres, angles radians, quaternions `wxyz`; every pose is in the frame that `frame` names.
+//! `docs/report.md` lists all fields. Fields may be added within a version; none changes its meaning.
+
+use serde::Serialize;
+use supersurface::Pose;
+use supersurface::grasp::{Grasp, Gripper, Kind};
+use supersurface::pipeline::{Object, Report};
+use supersurface::segment::Segmentation;
+
+/// What a report says beside the results.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportHead<'a> {
+    /// Name of the input.
+    pub source: &'a str,
+    /// `cloud`, or `robot` when the camera's pose was given.
+    pub frame: &'a str,
+    /// Pose of that frame in the world, where the file carries one.
+    pub world: Option<&'a Pose>,
+    /// The gripper for which grasps were planned.
+    pub gripper: &'a Gripper,
+    /// Most grasps an object that are written.
+    pub most_grasps: usize,
+    /// Seconds of each stage by name.
+    pub timing: &'a [(&'static str, f64)],
+    /// What the reader and the unit check have to say.
+    pub warnings: &'a [String],
+}
+
+/// The JSON text of a report.
+pub fn report_json(report: &Report, head: &ReportHead<'_>) -> String {
+    let objects = report.objects.iter().zip(&report.segmentation.objects).enumerate();
+    let objects = objects.map(|(i, (o, points))| object(i + 1, o, points.len(), head)).collect();
+    let file = File { plane: plane(&report.segmentation), objects, ..File::head(head) };
+    text(&File { dropped: dropped(&report.segmentation), ..file })
+}
+
+/// The JSON text of a run that found no support or no usable points: `plane` is null and `message` says why.
+pub fn failure_json(message: &str, head: &ReportHead<'_>) -> String {
+    text(&File { message: Some(message.to_owned()), ..File::head(head) })
+}
+
+fn text(file: &File<'_>) -> String {
+    // plain structs of numbers and strings: serialisation has nothing to fail on
+    serde_json::to_string_pretty(file).unwrap_or_default()
+}
+
+#[derive(Serialize)]
+struct File<'a> {
+    format: &'static str,
+    version: u32,
+    units: Units,
+    source: &'a str,
+    frame: Frame<'a>,
+    message: Option<String>,
+    plane: Option<PlaneRow>,
+    gripper: &'a str,
+    objects: Vec<ObjectRow>,
+    dropped: Vec<DroppedRow>,
+    timing_s: std::collections::BTreeMap<&'static str, f64>,
+    warnings: &'a [String],
+}
+
+impl<'a> File<'a> {
+    fn head(head: &ReportHead<'a>) -> Self {
+        Self {
+            format: "supersurface-report",
+            version: 1,
+            units: Units { length: "m", angle: "rad", quaternion: "wxyz" },
+            source: head.source,
+            frame: Frame { id: head.frame, world_pose: head.world.map(PoseRow::new) },
+            message: None,
+            plane: None,
+            gripper: &head.gripper.name,
+            objects: Vec::new(),
+            dropped: Vec::new(),
+            timing_s: head.timing.iter().copied().collect(),
+            warnings: head.warnings,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Units {
+    length: &'static str,
+    angle: &'static str,
+    quaternion: &'static str,
+}
+
+#[derive(Serialize)]
+struct Frame<'a> {
+    id: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    world_pose: Option<PoseRow>,
+}
+
+#[derive(Serialize)]
+struct PlaneRow {
+    normal: [f64; 3],
+    offset: f64,
+    noise: f64,
+}
+
+fn plane(segmentation: &Segmentation) -> Option<PlaneRow> {
+    segmentation.support.map(|p| PlaneRow {
+        normal: p.normal().into_inner().into(),
+        offset: p.offset(),
+        noise: segmentation.support_noise,
+    })
+}
+
+#[derive(Serialize)]
+struct PoseRow {
+    position: [f64; 3],
+    orientation_wxyz: [f64; 4],
+}
+
+impl PoseRow {
+    fn new(pose: &Pose) -> Self {
+        let q = pose.rotation;
+        Self { position: pose.translation.vector.into(), orientation_wxyz: [q.w, q.i, q.j, q.k] }
+    }
+}
+
+#[derive(Serialize)]
+struct ObjectRow {
+    id: usize,
+    points: usize,
+    surface: Option<SurfaceRow>,
+    #[serde(flatten)]
+    quality: Option<QualityRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    grasps: Vec<GraspRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refusal: Option<String>,
+}
+
+#[derive(Serialize)]
+struct SurfaceRow {
+    r#type: &'static str,
+    semi_axes: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring_ratio: Option<f64>,
+    exponents: [f64; 2],
+    #[serde(flatten)]
+    pose: PoseRow,
+}
+
+#[derive(Serialize)]
+struct QualityRow {
+    residual: f64,
+    noise: f64,
+    inlier_share: f64,
+    family_margin: f64,
+}
+
+fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> ObjectRow {
+    let fit = object.fit.as_ref();
+    let surface = fit.ok().map(|f| {
+        let shape = f.surface.shape();
+        SurfaceRow {
+            r#type: shape.name(),
+            semi_axes: shape.semi_axes(),
+            ring_ratio: shape.ring_ratio(),
+            exponents: shape.exponents(),
+            pose: PoseRow::new(f.surface.pose()),
+        }
+    });
+    let quality = fit.ok().map(|f| QualityRow {
+        residual: f.residual,
+        noise: f.noise,
+        inlier_share: f.inlier_share(),
+        family_margin: f.margin,
+    });
+    let kind = kind(head.gripper);
+    let grasps = object.grasps.iter().flatten().take(head.most_grasps);
+    ObjectRow {
+        id,
+        points,
+        surface,
+        quality,
+        error: fit.err().map(ToString::to_string),
+        grasps: grasps.map(|g| GraspRow::new(g, kind)).collect(),
+        refusal: object.grasps.as_ref().err().map(ToString::to_string),
+    }
+}
+
+fn kind(gripper: &Gripper) -> &'static str {
+    match gripper.kind {
+        Kind::Jaw(_) => "parallel",
+        Kind::Suction(_) => "suction",
+    }
+}
+
+#[derive(Serialize)]
+struct GraspRow {
+    r#type: &'static str,
+    #[serde(flatten)]
+    pose: PoseRow,
+    opening: f64,
+    contact_width: f64,
+    inside: bool,
+    score: f64,
+    terms: std::collections::BTreeMap<&'static str, f64>,
+    source: &'static str,
+}
+
+impl GraspRow {
+    fn new(grasp: &Grasp, kind: &'static str) -> Self {
+        Self {
+            r#type: kind,
+            pose: PoseRow::new(&grasp.pose),
+            opening: grasp.opening,
+            contact_width: grasp.contact_width,
+            inside: grasp.inside,
+            score: grasp.score,
+            terms: grasp.terms.iter().copied().collect(),
+            source: grasp.source,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct DroppedRow {
+    points: usize,
+    reason: String,
+}
+
+fn dropped(segmentation: &Segmentation) -> Vec<DroppedRow> {
+    let row = |d: &supersurface::segment::Dropped| DroppedRow {
+        points: d.points.len(),
+        reason: d.reason.to_string(),
+    };
+    segmentation.dropped.iter().map(row).collect()
+}

@@ -1,0 +1,44 @@
+//! Writing so that a failure leaves no half file: into a neighbour first, then renamed.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::error::WriteError;
+
+/// Writes `bytes` to a file. What is no regular file (a pipe, `/dev/stdout`) is written straight.
+pub(crate) fn write_bytes(file: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let failed = |e| WriteError::new(file, e);
+    let straight = fs::metadata(file).is_ok_and(|m| !m.is_file());
+    if straight {
+        let mut out = fs::OpenOptions::new().write(true).open(file).map_err(failed)?;
+        return out.write_all(bytes).map_err(failed);
+    }
+    let Some(name) = file.file_name() else {
+        return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, "no file name")));
+    };
+    let mut beside = name.to_owned();
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = file.with_file_name(beside);
+    let result = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, file));
+    if result.is_err() {
+        // the first error is the one to tell
+        let _ = fs::remove_file(&beside);
+    }
+    result.map_err(failed)
+}
+
+/// Writes a picture: `size` is [width, height], `pixels` red, green, blue row by row.
+pub fn write_png(file: &Path, size: [usize; 2], pixels: &[u8]) -> Result<(), WriteError> {
+    let encode = || -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        encoder.write_header()?.write_image_data(pixels)?;
+        Ok(bytes)
+    };
+    let bytes = encode().map_err(|e| WriteError::new(file, io::Error::other(e)))?;
+    write_bytes(file, &bytes)
+}

@@ -1,0 +1,66 @@
+//! Broken files never panic: cut at every byte, and with bytes changed at random.
+
+use supersurface::numeric::random::Stream;
+use supersurface_io::{ReadOptions, parse};
+
+use crate::formats::{camera, depth_png, pcd, ply};
+
+fn samples() -> Vec<(&'static str, Vec<u8>, ReadOptions)> {
+    let plain = ReadOptions::default;
+    let mut all = vec![
+        ("t.xyz", b"1 2 3\n4,5,6\nx y z\n7;8;9\n".to_vec(), plain()),
+        ("d.png", depth_png(), camera()),
+    ];
+    for encoding in ["ascii", "binary", "binary_compressed"] {
+        all.push(("p.pcd", pcd(encoding), plain()));
+    }
+    for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        all.push(("p.ply", ply(format), plain()));
+    }
+    all
+}
+
+#[test]
+fn a_file_cut_anywhere_is_read_or_refused() {
+    for (name, bytes, options) in samples() {
+        for end in 0..bytes.len() {
+            let _ = parse(name, &bytes[..end], &options);
+        }
+    }
+}
+
+#[test]
+fn changed_bytes_are_read_or_refused() {
+    for (k, (name, bytes, options)) in samples().into_iter().enumerate() {
+        let mut random = Stream::new(17, k as u64);
+        for _ in 0..4000 {
+            let mut changed = bytes.clone();
+            for _ in 0..1 + random.index(4) {
+                let at = random.index(changed.len());
+                changed[at] = random.bits() as u8;
+            }
+            let _ = parse(name, &changed, &options);
+        }
+    }
+}
+
+#[test]
+fn promises_that_the_file_does_not_keep_are_refused_at_once() {
+    for count in ["1000000000000", "18446744073709551615", "4611686018427387904"] {
+        for data in ["ascii", "binary", "binary_compressed"] {
+            let header = format!(
+                "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {count}\n\
+                 HEIGHT 1\nPOINTS {count}\nDATA {data}\n\x10\0\0\0\x10\0\0\0garbage"
+            );
+            let error = parse("h.pcd", header.as_bytes(), &Default::default()).unwrap_err();
+            assert!(error.to_string().contains("h.pcd"), "{error}");
+        }
+        for format in ["ascii", "binary_little_endian"] {
+            let header = format!(
+                "ply\nformat {format} 1.0\nelement vertex {count}\nproperty float x\n\
+                 property float y\nproperty float z\nend_header\n1 2 3\n"
+            );
+            assert!(parse("h.ply", header.as_bytes(), &Default::default()).is_err());
+        }
+    }
+}
