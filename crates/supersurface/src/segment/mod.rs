@@ -209,8 +209,14 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         let (Some(p), Some(c)) = (cloud.points.get(*i as usize), class.get_mut(*i as usize)) else {
             continue;
         };
-        let above = support.plane.height(p) > support.margin(p, &sight, options);
-        *c = if above { Class::Above } else { Class::Other };
+        let height = support.plane.height(p) / support.margin(p, &sight, options);
+        *c = if height > 1.0 {
+            Class::Above
+        } else if height > 0.5 {
+            Class::Low
+        } else {
+            Class::Other
+        };
     }
     let pieces = clusters::pieces(cloud, &class, &sight, options.gap, 20);
     let image = match (sight::grid(cloud), sight.eye) {

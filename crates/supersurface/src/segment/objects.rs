@@ -21,6 +21,8 @@ use crate::segment::{DropReason, Dropped, SegmentOptions};
 const EDGE: f64 = 0.01;
 /// Top of a thing, in margins, up to which it may be the support's own unevenness.
 const FLAT: f64 = 1.5;
+/// Share of its size along the border of the image from which too much of a thing may be missing.
+const CUT: f64 = 0.35;
 /// Pixels under a piece in which what hides it is sought: at once, or across the bottom of a pot.
 const BENEATH: usize = 8;
 const ACROSS: usize = 100;
@@ -76,7 +78,11 @@ pub(crate) fn gather(
     for (piece, fault) in pieces.into_iter().zip(faults) {
         let Some(piece) = piece else { continue };
         match fault.or_else(|| slight(&piece, support, sight, image.as_ref(), options)) {
-            None => objects.push(piece.points),
+            None => {
+                let mut points = piece.points;
+                image.iter_mut().for_each(|image| image.grow(&mut points));
+                objects.push(points);
+            }
             Some(reason) => dropped.push(Dropped { points: piece.points, reason }),
         }
     }
@@ -134,7 +140,12 @@ fn crumb(piece: &Piece, other: &Piece, hangs: bool) -> Option<f64> {
     }
     let near = piece.gap(other, 0.04)?;
     let high = piece.bottom > 0.015 + 0.1 * other.top;
-    (near < 0.012 || near < 0.03 && (high || hangs) || piece.within(other) > 0.5).then_some(near)
+    let tiny = piece.points.len() * 25 < other.points.len();
+    (near < 0.012
+        || tiny && near < 0.025
+        || near < 0.03 && (high || hangs)
+        || piece.within(other) > 0.35)
+        .then_some(near)
 }
 
 /// Gap of two pieces whose outlines overlap, when it is slight for their size.
@@ -203,7 +214,7 @@ fn slight(
     if middle.is_some_and(|p| piece.top < FLAT * support.margin(p, sight, options)) {
         return Some(DropReason::Flat);
     }
-    if image.is_some_and(|i| i.cut(&piece.points) > 0.5 * piece.size()) {
+    if image.is_some_and(|i| i.cut(&piece.points) > CUT * piece.size()) {
         return Some(DropReason::CutOff);
     }
     let aloft = piece.size() < HANGING && piece.aloft();

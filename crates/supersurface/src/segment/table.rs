@@ -81,6 +81,12 @@ const LEAST_SHARE: f64 = 0.1;
 const MOST_BELOW: f64 = 1.3;
 /// Width of a support at least, in metres.
 const NARROWEST: f64 = 0.2;
+/// What makes a plane over a floor a table rather than the top of a box: it is level (cosine), this far
+/// above the floor and this wide (metres), and holds this share of the points.
+const LEVEL: f64 = 0.99;
+const TABLE_HEIGHT: f64 = 0.3;
+const TABLE_WIDTH: f64 = 0.5;
+const TABLE_SHARE: f64 = 0.05;
 /// Points of the cloud that the search sees, and that the last refinement sees.
 const SAMPLE: usize = 6000;
 const FINE_SAMPLE: usize = 20_000;
@@ -123,29 +129,43 @@ pub(crate) fn find(
     let all = readings(cloud, &sample, &sight);
     let mut planes = dominant(&all, 6, random);
     planes.sort_by_key(|c| std::cmp::Reverse(c.members.len()));
+    let wide = |candidate: &Candidate, random: &mut Stream| {
+        let support = refine(cloud, indices, candidate, &sight, random)?;
+        let width = support.outline.diameter();
+        Some((support, width))
+    };
     let mut why = None;
     for candidate in &planes {
-        match judge(candidate, &all, &sight) {
-            Ok(()) => {
-                let support = refine(cloud, indices, candidate, &sight, random);
-                let Some(support) = support else { continue };
-                let width = support.outline.diameter();
-                if width >= NARROWEST {
-                    return Ok((support, sight));
-                }
-                why.get_or_insert(NoTable::Narrow { width, limit: NARROWEST });
-            }
-            Err(reason) => {
-                why.get_or_insert(reason);
-            }
+        if let Err(reason) = judge(candidate, &all, &sight) {
+            why.get_or_insert(reason);
+            continue;
         }
+        let Some((support, width)) = wide(candidate, random) else { continue };
+        if width < NARROWEST {
+            why.get_or_insert(NoTable::Narrow { width, limit: NARROWEST });
+            continue;
+        }
+        // A table is preferred to the floor that it stands on, though less of it may be seen.
+        let above = planes.iter().filter(|c| {
+            let rise = candidate.offset - c.offset;
+            c.normal.dot(&candidate.normal) > LEVEL
+                && rise > TABLE_HEIGHT
+                && share(c, &all) > TABLE_SHARE
+        });
+        let table = above.filter_map(|c| wide(c, random)).find(|(_, width)| *width > TABLE_WIDTH);
+        return Ok((table.map_or(support, |(table, _)| table), sight));
     }
     Err(why.unwrap_or(NoTable::NoPlane))
 }
 
+/// Share of the readings that are in a plane.
+fn share(candidate: &Candidate, all: &[Reading]) -> f64 {
+    candidate.members.len() as f64 / all.len().max(1) as f64
+}
+
 /// Whether a plane can be a support.
 fn judge(candidate: &Candidate, all: &[Reading], sight: &Sight) -> Result<(), NoTable> {
-    let share = candidate.members.len() as f64 / all.len() as f64;
+    let share = share(candidate, all);
     let beneath = all.iter().filter(|r| {
         let (h, width) = candidate.height(r);
         h < -3.0 * width - 0.02
