@@ -5,16 +5,16 @@
 //! n·up = 0. A plane faced squarely is a table only for a camera that looks straight down on it from an
 //! arm's length. A support is near, wide, and what is seen in front of it is on its upper side.
 
-use crate::Point;
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
-use crate::segment::footprint::{Ground, Outline};
+use crate::segment::footprint::{Ground, Outline, Spot};
 use crate::segment::planes::{
     Candidate, Reading, dominant, height, least_squares, readings, spread,
 };
 use crate::segment::sight::Sight;
 use crate::shape::Plane;
+use crate::{Direction, Point};
 
 /// Why no plane of a cloud is a support, told of the largest one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -82,14 +82,17 @@ const MOST_BELOW: f64 = 1.3;
 /// Width of a support at least, in metres.
 const NARROWEST: f64 = 0.2;
 /// What makes a plane over a floor a table rather than the top of a box: it is level (cosine), this far
-/// above the floor and this wide (metres), and holds this share of the points.
+/// above the floor, and this wide, in metres.
 const LEVEL: f64 = 0.99;
 const TABLE_HEIGHT: f64 = 0.3;
 const TABLE_WIDTH: f64 = 0.5;
-const TABLE_SHARE: f64 = 0.05;
+/// The floor's points, at most, in multiples of the table's.
+const TABLE_SHARE: usize = 2;
 /// Points of the cloud that the search sees, and that the last refinement sees.
 const SAMPLE: usize = 6000;
 const FINE_SAMPLE: usize = 20_000;
+/// Points from which a support's outline is found.
+const COARSE_SAMPLE: usize = 5000;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
 
@@ -150,7 +153,7 @@ pub(crate) fn find(
             let rise = candidate.offset - c.offset;
             c.normal.dot(&candidate.normal) > LEVEL
                 && rise > TABLE_HEIGHT
-                && share(c, &all) > TABLE_SHARE
+                && c.members.len() > candidate.members.len() / TABLE_SHARE
         });
         let table = above.filter_map(|c| wide(c, random)).find(|(_, width)| *width > TABLE_WIDTH);
         return Ok((table.map_or(support, |(table, _)| table), sight));
@@ -209,35 +212,50 @@ fn refine(
     let sample = spread(indices, FINE_SAMPLE, random);
     let all = readings(cloud, &sample, sight);
     let (mut normal, mut offset) = (candidate.normal, candidate.offset);
-    let (mut share, mut relative, mut noise) = (1.0, 0.0, 0.0);
-    let mut column = Vec::with_capacity(all.len());
-    for _ in 0..4 {
-        (normal, offset) = least_squares(all.iter(), &normal, offset, share)?;
-        let heights = || all.iter().map(|r| height(&normal, offset, r));
-        let inside = || heights().filter(|(h, width)| h.abs() < *width);
-        relative = deviation(&mut column, inside().map(|(h, width)| h / width))?;
-        noise = deviation(&mut column, inside().map(|(h, _)| h))?;
-        share = (2.5 * relative).clamp(0.05, 1.0);
-    }
-    // Back from the eye's frame to the cloud's.
+    let (mut relative, mut noise) = (0.0, 0.0);
+    // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
+    let place = |r: &Reading| Point::from(r.ray + origin);
+    let mut column = Vec::with_capacity(all.len());
+    for _ in 0..2 {
+        // The plane runs on through other things, which would tilt it: only its main piece counts.
+        let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
+        let outline = main_piece(&all, &normal, offset, |r| ground.spot(&place(r)))?;
+        let on = |r: &&Reading| outline.depth(&ground.spot(&place(r))) >= 0.0;
+        let inside: Vec<Reading> = all.iter().filter(on).copied().collect();
+        let mut share = 1.0;
+        for _ in 0..3 {
+            (normal, offset) = least_squares(inside.iter(), &normal, offset, share)?;
+            let heights = || inside.iter().map(|r| height(&normal, offset, r));
+            let near = || heights().filter(|(h, width)| h.abs() < *width);
+            relative = deviation(&mut column, near().map(|(h, width)| h / width))?;
+            noise = deviation(&mut column, near().map(|(h, _)| h))?;
+            share = (2.5 * relative).clamp(0.05, 1.0);
+        }
+    }
     let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
     let ground = Ground::of(&plane);
-    let inside = sample.iter().zip(&all).filter(|(_, r)| {
-        let (h, width) = height(&normal, offset, r);
+    let outline = main_piece(&all, &normal, offset, |r| ground.spot(&place(r)))?;
+    Some(Support { plane, noise, relative, outline })
+}
+
+/// Outline of the largest piece of the readings in a plane.
+fn main_piece(
+    all: &[Reading],
+    normal: &Direction,
+    offset: f64,
+    foot: impl Fn(&Reading) -> Spot,
+) -> Option<Outline> {
+    let step = all.len() / COARSE_SAMPLE + 1;
+    let inside = all.iter().step_by(step).filter(|r| {
+        let (h, width) = height(normal, offset, r);
         h.abs() < width
     });
-    let feet: Vec<Point> = inside
-        .filter_map(|(i, _)| cloud.points.get(*i as usize))
-        .map(|p| ground.spot(p))
-        .map(|[x, y]| Point::new(x, y, 0.0))
-        .collect();
-    // The plane runs on through other things: only its main piece is the support.
+    let feet: Vec<Point> = inside.map(foot).map(|[x, y]| Point::new(x, y, 0.0)).collect();
     let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, PIECE_GAP)?.components();
     let main = pieces.into_iter().max_by_key(Vec::len)?;
     let spots = main.iter().filter_map(|i| feet.get(*i as usize));
-    let outline = Outline::around(&mut spots.map(|p| [p.x, p.y]).collect());
-    Some(Support { plane, noise, relative, outline })
+    Some(Outline::around(&mut spots.map(|p| [p.x, p.y]).collect()))
 }
 
 /// Standard deviation about zero by the median of the absolute values, which outliers do not move.
