@@ -17,7 +17,7 @@ use crate::segment::sight::Sight;
 use crate::segment::table::Support;
 use crate::segment::{DropReason, Dropped, SegmentOptions};
 
-/// Depth inside the support's outline at which most of an object is, in metres.
+/// Depth inside the support's outline at which at least a third of an object is, in metres.
 const EDGE: f64 = 0.01;
 /// Top of a thing, in margins, up to which it may be the support's own unevenness.
 const FLAT: f64 = 1.5;
@@ -26,8 +26,10 @@ const CUT: f64 = 0.35;
 /// Pixels under a piece in which what hides it is sought: at once, or across the bottom of a pot.
 const BENEATH: usize = 8;
 const ACROSS: usize = 100;
-/// Size under which nothing can hang in the air, in metres.
-const HANGING: f64 = 0.1;
+/// Size under which, and height of the foot over which, nothing hangs in the air, in metres: larger and
+/// lower things may have a foot that was not seen.
+const SMALL: f64 = 0.1;
+const HIGH: f64 = 0.15;
 
 /// The objects among `pieces`, in the order of their first points, and what is none.
 pub(crate) fn gather(
@@ -196,7 +198,7 @@ fn misplaced(
     }
     let inside = |p: &&Point| support.outline.depth(&ground.spot(p)) > EDGE;
     let standing = piece.sample.iter().filter(inside).count();
-    (2 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
+    (3 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
 }
 
 /// Why a whole thing is none; `None` when it is one.
@@ -217,7 +219,7 @@ fn slight(
     if image.is_some_and(|i| i.cut(&piece.points) > CUT * piece.size()) {
         return Some(DropReason::CutOff);
     }
-    let aloft = piece.size() < HANGING && piece.aloft();
+    let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH);
     let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points));
     hangs.then_some(DropReason::Hanging)
 }

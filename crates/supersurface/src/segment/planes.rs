@@ -108,7 +108,7 @@ pub(crate) fn dominant(all: &[Reading], most: usize, random: &mut Stream) -> Vec
 }
 
 /// Samples tried for one plane, and readings on which they are scored.
-const TRIALS: usize = 160;
+const TRIALS: usize = 240;
 const JURY: usize = 1500;
 
 /// The plane that most of the free readings agree with.

@@ -78,9 +78,9 @@ const LEAST_UP: f64 = 0.34;
 /// Share of the points that a support holds at least.
 const LEAST_SHARE: f64 = 0.1;
 /// Points beneath a support (a floor beside the table) at most, in multiples of its own.
-const MOST_BELOW: f64 = 1.3;
+const MOST_BELOW: f64 = 2.0;
 /// Width of a support at least, in metres.
-const NARROWEST: f64 = 0.2;
+const NARROWEST: f64 = 0.25;
 /// What makes a plane over a floor a table rather than the top of a box: it is level (cosine), this far
 /// above the floor, and this wide, in metres.
 const LEVEL: f64 = 0.99;
@@ -95,6 +95,8 @@ const FINE_SAMPLE: usize = 20_000;
 const COARSE_SAMPLE: usize = 5000;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
+/// Gap that things on the support may make in what is seen of it, in metres.
+const OBJECT_GAP: f64 = 0.12;
 
 /// The support that was found.
 #[derive(Clone, Debug)]
@@ -161,14 +163,13 @@ pub(crate) fn find(
     Err(why.unwrap_or(NoTable::NoPlane))
 }
 
-/// Share of the readings that are in a plane.
-fn share(candidate: &Candidate, all: &[Reading]) -> f64 {
-    candidate.members.len() as f64 / all.len().max(1) as f64
-}
-
 /// Whether a plane can be a support.
 fn judge(candidate: &Candidate, all: &[Reading], sight: &Sight) -> Result<(), NoTable> {
-    let share = share(candidate, all);
+    let inside = all.iter().filter(|r| {
+        let (h, width) = candidate.height(r);
+        h.abs() < width
+    });
+    let share = inside.count() as f64 / all.len() as f64;
     let beneath = all.iter().filter(|r| {
         let (h, width) = candidate.height(r);
         h < -3.0 * width - 0.02
@@ -220,7 +221,7 @@ fn refine(
     for _ in 0..2 {
         // The plane runs on through other things, which would tilt it: only its main piece counts.
         let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
-        let outline = main_piece(&all, &normal, offset, |r| ground.spot(&place(r)))?;
+        let outline = main_piece(&all, &normal, offset, PIECE_GAP, |r| ground.spot(&place(r)))?;
         let on = |r: &&Reading| outline.depth(&ground.spot(&place(r))) >= 0.0;
         let inside: Vec<Reading> = all.iter().filter(on).copied().collect();
         let mut share = 1.0;
@@ -235,7 +236,7 @@ fn refine(
     }
     let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
     let ground = Ground::of(&plane);
-    let outline = main_piece(&all, &normal, offset, |r| ground.spot(&place(r)))?;
+    let outline = main_piece(&all, &normal, offset, OBJECT_GAP, |r| ground.spot(&place(r)))?;
     Some(Support { plane, noise, relative, outline })
 }
 
@@ -244,6 +245,7 @@ fn main_piece(
     all: &[Reading],
     normal: &Direction,
     offset: f64,
+    gap: f64,
     foot: impl Fn(&Reading) -> Spot,
 ) -> Option<Outline> {
     let step = all.len() / COARSE_SAMPLE + 1;
@@ -252,7 +254,7 @@ fn main_piece(
         h.abs() < width
     });
     let feet: Vec<Point> = inside.map(foot).map(|[x, y]| Point::new(x, y, 0.0)).collect();
-    let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, PIECE_GAP)?.components();
+    let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, gap)?.components();
     let main = pieces.into_iter().max_by_key(Vec::len)?;
     let spots = main.iter().filter_map(|i| feet.get(*i as usize));
     Some(Outline::around(&mut spots.map(|p| [p.x, p.y]).collect()))
