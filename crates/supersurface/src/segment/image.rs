@@ -29,6 +29,8 @@ const NOBODY: u32 = u32::MAX;
 const SKIP: usize = 8;
 /// Cameras leave a strip without readings along the border, at most this part of the image.
 const STRIP: usize = 14;
+/// The bottom of a pot is at most this part of the image's width deep, in the image.
+const ACROSS: usize = 6;
 /// Pixels by which a piece may grow.
 const GROWTH: usize = 3;
 /// A range that is nearer by this is in front, in metres.
@@ -108,19 +110,19 @@ impl<'a> Image<'a> {
         if rows < 6 { 0.0 } else { f64::from(sunk) / f64::from(rows) }
     }
 
-    /// The piece that hides this one along most of its lower edge, met within `reach` pixels under
-    /// it, if any.
-    pub(crate) fn before(&self, pixels: &[u32], reach: usize) -> Option<usize> {
+    /// The piece that hides this one along most of its lower edge, if any: met at once under it, or
+    /// `across` other things, as the near wall of a pot is across its bottom.
+    pub(crate) fn before(&self, pixels: &[u32], across: bool) -> Option<usize> {
         let own = self.owner.get(*pixels.first()? as usize)?;
         let mut fronts: Vec<usize> = Vec::new();
         let mut columns = 0usize;
         for i in self.lowest(pixels) {
             columns += 1;
-            let mut under = self.under(i, reach);
-            let other = if reach > SKIP {
+            let other = if across {
+                let mut under = self.under(i, self.width / ACROSS);
                 under.find(|j| self.owner[*j] != NOBODY && self.owner[*j] != *own)
             } else {
-                under.find(|j| self.class[*j] != Class::Missing)
+                self.under(i, SKIP).find(|j| self.class[*j] != Class::Missing)
             };
             let hides =
                 |j: &usize| self.owner[*j] != NOBODY && self.range(*j) < self.range(i) - IN_FRONT;

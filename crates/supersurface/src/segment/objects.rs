@@ -23,9 +23,11 @@ const EDGE: f64 = 0.01;
 const FLAT: f64 = 1.5;
 /// Share of its size along the border of the image from which too much of a thing may be missing.
 const CUT: f64 = 0.35;
-/// Pixels under a piece in which what hides it is sought: at once, or across the bottom of a pot.
-const BENEATH: usize = 8;
-const ACROSS: usize = 100;
+/// Share of curved rows from which a piece is an inside, and from which it is nothing else besides.
+const HOLLOW: f64 = 0.5;
+const ALL_HOLLOW: f64 = 0.78;
+/// Pieces that are looked at, the largest first: more are noise.
+const MOST: usize = 300;
 /// Size under which, and height of the foot over which, nothing hangs in the air, in metres: larger and
 /// lower things may have a foot that was not seen.
 const SMALL: f64 = 0.1;
@@ -34,7 +36,7 @@ const HIGH: f64 = 0.15;
 /// The objects among `pieces`, in the order of their first points, and what is none.
 pub(crate) fn gather(
     cloud: &[Point],
-    pieces: Vec<Vec<u32>>,
+    mut pieces: Vec<Vec<u32>>,
     support: &Support,
     sight: &Sight,
     mut image: Option<Image<'_>>,
@@ -42,13 +44,16 @@ pub(crate) fn gather(
 ) -> (Vec<Vec<u32>>, Vec<Dropped>) {
     let ground = Ground::of(&support.plane);
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
+    pieces.sort_by_key(|p| (std::cmp::Reverse(p.len()), p.first().copied()));
+    let noise = pieces.split_off(pieces.len().min(MOST));
+    dropped.extend(noise.into_iter().map(|points| Dropped { points, reason: DropReason::Speck }));
     for points in pieces {
         let piece = Piece::new(points, cloud, &support.plane, &ground);
         let reason = misplaced(&piece, support, &ground, options);
         kept.push((piece, reason));
     }
     // The smallest first, so that crumbs find their thing before things find each other.
-    kept.sort_by_key(|(p, _)| (p.points.len(), p.points.first().copied()));
+    kept.reverse();
     let (kept, faults): (Vec<Piece>, Vec<Option<DropReason>>) = kept.into_iter().unzip();
     let mut pieces: Vec<Option<Piece>> = kept.into_iter().map(Some).collect();
     if let Some(image) = &mut image {
@@ -103,8 +108,8 @@ fn owner(
 ) -> Option<usize> {
     let hangs = piece.aloft() && image.is_some_and(|i| i.hangs(&piece.points));
     let cup = |inner: &Piece, outer: usize| {
-        let reach = if inner.hollow > 0.78 { ACROSS } else { BENEATH };
-        inner.hollow > 0.5 && image.and_then(|i| i.before(&inner.points, reach)) == Some(outer)
+        let front = || image?.before(&inner.points, inner.hollow > ALL_HOLLOW);
+        inner.hollow > HOLLOW && front() == Some(outer)
     };
     let joint = |j: usize, other: &Piece| {
         // The gap comes last: it costs most.
