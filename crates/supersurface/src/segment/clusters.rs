@@ -16,6 +16,8 @@ pub(crate) enum Class {
     Missing,
     /// Something that is not to be clustered.
     Other,
+    /// The same, but so high that it may be the edge of what is.
+    Low,
     /// To be clustered.
     Above,
 }

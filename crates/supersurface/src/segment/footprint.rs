@@ -32,6 +32,8 @@ impl Ground {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outline {
     corners: Vec<Spot>,
+    /// For each edge its inward unit normal n and c, so that n·s + c is the depth of a spot s.
+    edges: Vec<[f64; 3]>,
 }
 
 impl Outline {
@@ -58,12 +60,12 @@ impl Outline {
         if corners.is_empty() {
             corners.extend(spots.first());
         }
-        Self { corners }
+        Self::of(corners)
     }
 
     /// Area in square metres.
     pub(crate) fn area(&self) -> f64 {
-        0.5 * self.edges().map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+        0.5 * self.sides().map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
     }
 
     /// Largest distance between two corners.
@@ -81,8 +83,8 @@ impl Outline {
         if self.corners.len() < 3 {
             return f64::NEG_INFINITY;
         }
-        let inside = |(a, b): (Spot, Spot)| turn(a, b, *s) / (b[0] - a[0]).hypot(b[1] - a[1]);
-        self.edges().map(inside).fold(f64::INFINITY, f64::min)
+        let inside = |[x, y, c]: &[f64; 3]| x * s[0] + y * s[1] + c;
+        self.edges.iter().map(inside).fold(f64::INFINITY, f64::min)
     }
 
     /// What two outlines have in common.
@@ -91,7 +93,7 @@ impl Outline {
             return Self::default();
         }
         let mut corners = self.corners.clone();
-        for (a, b) in other.edges() {
+        for (a, b) in other.sides() {
             let mut kept: Vec<Spot> = Vec::with_capacity(corners.len() + 1);
             for (k, p) in corners.iter().enumerate() {
                 let q = corners[(k + 1) % corners.len()];
@@ -106,10 +108,22 @@ impl Outline {
             }
             corners = kept;
         }
-        Self { corners }
+        Self::of(corners)
     }
 
-    fn edges(&self) -> impl Iterator<Item = (Spot, Spot)> + '_ {
+    fn of(corners: Vec<Spot>) -> Self {
+        let next = corners.iter().cycle().skip(1);
+        let edge = |(a, b): (&Spot, &Spot)| {
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let length = dx.hypot(dy);
+            let n = [-dy / length, dx / length];
+            [n[0], n[1], -(n[0] * a[0] + n[1] * a[1])]
+        };
+        let edges = corners.iter().zip(next).map(edge).filter(|e| e[2].is_finite()).collect();
+        Self { corners, edges }
+    }
+
+    fn sides(&self) -> impl Iterator<Item = (Spot, Spot)> + '_ {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(a, b)| (*a, *b))
     }

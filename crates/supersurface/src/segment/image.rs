@@ -19,14 +19,20 @@ pub(crate) struct Image<'a> {
     eye: Point,
     /// The piece of each pixel, or `NOBODY`.
     owner: Vec<u32>,
+    /// First and last column, first and last row of the image proper.
+    frame: [usize; 4],
 }
 
 /// The owner of pixels that are in no piece.
 const NOBODY: u32 = u32::MAX;
 /// Pixels without reading that are passed over under a piece.
 const SKIP: usize = 8;
-/// The border is this part of the image's width and height: cameras leave a strip without readings.
-const BORDER: usize = 40;
+/// Cameras leave a strip without readings along the border, at most this part of the image.
+const STRIP: usize = 14;
+/// The bottom of a pot is at most this part of the image's width deep, in the image.
+const ACROSS: usize = 6;
+/// Pixels by which a piece may grow.
+const GROWTH: usize = 3;
 /// A range that is nearer by this is in front, in metres.
 const IN_FRONT: f64 = 0.008;
 
@@ -39,7 +45,8 @@ impl<'a> Image<'a> {
         eye: Point,
     ) -> Option<Self> {
         let whole = width > 0 && points.len() == class.len() && points.len().is_multiple_of(width);
-        whole.then(|| Self { points, class, width, eye, owner: vec![NOBODY; points.len()] })
+        let owner = vec![NOBODY; points.len()];
+        whole.then(|| Self { points, class, width, eye, owner, frame: frame(class, width) })
     }
 
     /// Says that the pixels belong to piece number `piece`.
@@ -53,6 +60,36 @@ impl<'a> Image<'a> {
 
     fn range(&self, i: usize) -> f64 {
         self.points.get(i).map_or(f64::NAN, |p| (p - self.eye).norm())
+    }
+
+    /// Adds to a piece what is `Low` beside it, a few pixels deep: its edge on the support, and the holes
+    /// that noise makes in a flat thing.
+    pub(crate) fn grow(&mut self, pixels: &mut Vec<u32>) {
+        let Some(own) = pixels.first().and_then(|i| self.owner.get(*i as usize)).copied() else {
+            return;
+        };
+        let mut from = 0;
+        for _ in 0..GROWTH {
+            let to = pixels.len();
+            for k in from..to {
+                let i = pixels[k] as usize;
+                let sides = [
+                    i.checked_sub(self.width),
+                    i.checked_sub(1),
+                    Some(i + 1),
+                    Some(i + self.width),
+                ];
+                for j in sides.into_iter().flatten() {
+                    let free = self.class.get(j) == Some(&Class::Low) && self.owner[j] == NOBODY;
+                    if free && (self.range(i) - self.range(j)).abs() < 2.0 * IN_FRONT {
+                        self.owner[j] = own;
+                        pixels.push(j as u32);
+                    }
+                }
+            }
+            from = to;
+        }
+        pixels.sort_unstable();
     }
 
     /// Share of a piece's rows (its pixels in ascending order) that curve away from the eye.
@@ -73,19 +110,19 @@ impl<'a> Image<'a> {
         if rows < 6 { 0.0 } else { f64::from(sunk) / f64::from(rows) }
     }
 
-    /// The piece that hides this one along most of its lower edge, met within `reach` pixels under
-    /// it, if any.
-    pub(crate) fn before(&self, pixels: &[u32], reach: usize) -> Option<usize> {
+    /// The piece that hides this one along most of its lower edge, if any: met at once under it, or
+    /// `across` other things, as the near wall of a pot is across its bottom.
+    pub(crate) fn before(&self, pixels: &[u32], across: bool) -> Option<usize> {
         let own = self.owner.get(*pixels.first()? as usize)?;
         let mut fronts: Vec<usize> = Vec::new();
         let mut columns = 0usize;
         for i in self.lowest(pixels) {
             columns += 1;
-            let mut under = self.under(i, reach);
-            let other = if reach > SKIP {
+            let other = if across {
+                let mut under = self.under(i, self.width / ACROSS);
                 under.find(|j| self.owner[*j] != NOBODY && self.owner[*j] != *own)
             } else {
-                under.find(|j| self.class[*j] != Class::Missing)
+                self.under(i, SKIP).find(|j| self.class[*j] != Class::Missing)
             };
             let hides =
                 |j: &usize| self.owner[*j] != NOBODY && self.range(*j) < self.range(i) - IN_FRONT;
@@ -126,11 +163,10 @@ impl<'a> Image<'a> {
     /// How much of a piece lies along the border of the image: the diagonal of the box of its points
     /// there, in metres.
     pub(crate) fn cut(&self, pixels: &[u32]) -> f64 {
-        let (w, h) = (self.width, self.points.len() / self.width);
-        let (mx, my) = (w / BORDER, h / BORDER);
+        let [left, right, top, bottom] = self.frame;
         let at_border = |i: &&u32| {
-            let (u, v) = (**i as usize % w, **i as usize / w);
-            u < mx || v < my || u + mx >= w || v + my >= h
+            let (u, v) = (**i as usize % self.width, **i as usize / self.width);
+            u < left + 3 || u + 3 > right || v < top + 3 || v + 3 > bottom
         };
         let mut points =
             pixels.iter().filter(at_border).filter_map(|i| self.points.get(*i as usize));
@@ -166,4 +202,26 @@ impl<'a> Image<'a> {
         }
         rows >= 5 && 5 * hidden > 4 * rows
     }
+}
+
+/// First and last column, first and last row of an image without the strip that has hardly a reading.
+fn frame(class: &[Class], width: usize) -> [usize; 4] {
+    let height = class.len() / width;
+    let (mut columns, mut rows) = (vec![0usize; width], vec![0usize; height]);
+    for (row, count) in class.chunks_exact(width).zip(&mut rows) {
+        for (c, column) in row.iter().zip(&mut columns) {
+            let seen = usize::from(*c != Class::Missing);
+            *column += seen;
+            *count += seen;
+        }
+    }
+    let ends = |counts: &[usize], full: usize| {
+        let strip = counts.len() / STRIP;
+        let seen = |c: &usize| 5 * c > full;
+        let first = counts.iter().position(seen).filter(|k| *k <= strip).unwrap_or(0);
+        let last = counts.iter().rposition(seen).filter(|k| k + strip + 1 >= counts.len());
+        [first, last.unwrap_or(counts.len() - 1)]
+    };
+    let ([left, right], [top, bottom]) = (ends(&columns, height), ends(&rows, width));
+    [left, right, top, bottom]
 }

@@ -17,20 +17,26 @@ use crate::segment::sight::Sight;
 use crate::segment::table::Support;
 use crate::segment::{DropReason, Dropped, SegmentOptions};
 
-/// Depth inside the support's outline at which most of an object is, in metres.
+/// Depth inside the support's outline at which at least a third of an object is, in metres.
 const EDGE: f64 = 0.01;
 /// Top of a thing, in margins, up to which it may be the support's own unevenness.
 const FLAT: f64 = 1.5;
-/// Pixels under a piece in which what hides it is sought: at once, or across the bottom of a pot.
-const BENEATH: usize = 8;
-const ACROSS: usize = 100;
-/// Size under which nothing can hang in the air, in metres.
-const HANGING: f64 = 0.1;
+/// Share of its size along the border of the image from which too much of a thing may be missing.
+const CUT: f64 = 0.35;
+/// Share of curved rows from which a piece is an inside, and from which it is nothing else besides.
+const HOLLOW: f64 = 0.5;
+const ALL_HOLLOW: f64 = 0.78;
+/// Pieces that are looked at, the largest first: more are noise.
+const MOST: usize = 300;
+/// Size under which, and height of the foot over which, nothing hangs in the air, in metres: larger and
+/// lower things may have a foot that was not seen.
+const SMALL: f64 = 0.1;
+const HIGH: f64 = 0.15;
 
 /// The objects among `pieces`, in the order of their first points, and what is none.
 pub(crate) fn gather(
     cloud: &[Point],
-    pieces: Vec<Vec<u32>>,
+    mut pieces: Vec<Vec<u32>>,
     support: &Support,
     sight: &Sight,
     mut image: Option<Image<'_>>,
@@ -38,13 +44,16 @@ pub(crate) fn gather(
 ) -> (Vec<Vec<u32>>, Vec<Dropped>) {
     let ground = Ground::of(&support.plane);
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
+    pieces.sort_by_key(|p| (std::cmp::Reverse(p.len()), p.first().copied()));
+    let noise = pieces.split_off(pieces.len().min(MOST));
+    dropped.extend(noise.into_iter().map(|points| Dropped { points, reason: DropReason::Speck }));
     for points in pieces {
         let piece = Piece::new(points, cloud, &support.plane, &ground);
         let reason = misplaced(&piece, support, &ground, options);
         kept.push((piece, reason));
     }
     // The smallest first, so that crumbs find their thing before things find each other.
-    kept.sort_by_key(|(p, _)| (p.points.len(), p.points.first().copied()));
+    kept.reverse();
     let (kept, faults): (Vec<Piece>, Vec<Option<DropReason>>) = kept.into_iter().unzip();
     let mut pieces: Vec<Option<Piece>> = kept.into_iter().map(Some).collect();
     if let Some(image) = &mut image {
@@ -76,7 +85,11 @@ pub(crate) fn gather(
     for (piece, fault) in pieces.into_iter().zip(faults) {
         let Some(piece) = piece else { continue };
         match fault.or_else(|| slight(&piece, support, sight, image.as_ref(), options)) {
-            None => objects.push(piece.points),
+            None => {
+                let mut points = piece.points;
+                image.iter_mut().for_each(|image| image.grow(&mut points));
+                objects.push(points);
+            }
             Some(reason) => dropped.push(Dropped { points: piece.points, reason }),
         }
     }
@@ -95,8 +108,8 @@ fn owner(
 ) -> Option<usize> {
     let hangs = piece.aloft() && image.is_some_and(|i| i.hangs(&piece.points));
     let cup = |inner: &Piece, outer: usize| {
-        let reach = if inner.hollow > 0.78 { ACROSS } else { BENEATH };
-        inner.hollow > 0.5 && image.and_then(|i| i.before(&inner.points, reach)) == Some(outer)
+        let front = || image?.before(&inner.points, inner.hollow > ALL_HOLLOW);
+        inner.hollow > HOLLOW && front() == Some(outer)
     };
     let joint = |j: usize, other: &Piece| {
         // The gap comes last: it costs most.
@@ -134,7 +147,12 @@ fn crumb(piece: &Piece, other: &Piece, hangs: bool) -> Option<f64> {
     }
     let near = piece.gap(other, 0.04)?;
     let high = piece.bottom > 0.015 + 0.1 * other.top;
-    (near < 0.012 || near < 0.03 && (high || hangs) || piece.within(other) > 0.5).then_some(near)
+    let tiny = piece.points.len() * 25 < other.points.len();
+    (near < 0.012
+        || tiny && near < 0.025
+        || near < 0.03 && (high || hangs)
+        || piece.within(other) > 0.35)
+        .then_some(near)
 }
 
 /// Gap of two pieces whose outlines overlap, when it is slight for their size.
@@ -185,7 +203,7 @@ fn misplaced(
     }
     let inside = |p: &&Point| support.outline.depth(&ground.spot(p)) > EDGE;
     let standing = piece.sample.iter().filter(inside).count();
-    (2 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
+    (3 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
 }
 
 /// Why a whole thing is none; `None` when it is one.
@@ -203,10 +221,10 @@ fn slight(
     if middle.is_some_and(|p| piece.top < FLAT * support.margin(p, sight, options)) {
         return Some(DropReason::Flat);
     }
-    if image.is_some_and(|i| i.cut(&piece.points) > 0.5 * piece.size()) {
+    if image.is_some_and(|i| i.cut(&piece.points) > CUT * piece.size()) {
         return Some(DropReason::CutOff);
     }
-    let aloft = piece.size() < HANGING && piece.aloft();
+    let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH);
     let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points));
     hangs.then_some(DropReason::Hanging)
 }

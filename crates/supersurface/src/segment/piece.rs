@@ -54,6 +54,10 @@ impl Piece {
 
     /// Smallest distance to another piece; `None` when it is over `most`.
     pub(crate) fn gap(&self, other: &Self, most: f64) -> Option<f64> {
+        let apart = |a: &Self, b: &Self| (0..3).any(|k| a.low[k] > b.high[k] + most);
+        if apart(self, other) || apart(other, self) {
+            return None;
+        }
         // Only points within `most` of the other's box can be that near.
         let facing = |a: &Self, b: &Self| -> Vec<Point> {
             let near =

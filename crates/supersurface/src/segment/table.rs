@@ -5,16 +5,16 @@
 //! n·up = 0. A plane faced squarely is a table only for a camera that looks straight down on it from an
 //! arm's length. A support is near, wide, and what is seen in front of it is on its upper side.
 
-use crate::Point;
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
-use crate::segment::footprint::{Ground, Outline};
+use crate::segment::footprint::{Ground, Outline, Spot};
 use crate::segment::planes::{
     Candidate, Reading, dominant, height, least_squares, readings, spread,
 };
 use crate::segment::sight::Sight;
 use crate::shape::Plane;
+use crate::{Direction, Point};
 
 /// Why no plane of a cloud is a support, told of the largest one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,14 +78,25 @@ const LEAST_UP: f64 = 0.34;
 /// Share of the points that a support holds at least.
 const LEAST_SHARE: f64 = 0.1;
 /// Points beneath a support (a floor beside the table) at most, in multiples of its own.
-const MOST_BELOW: f64 = 1.3;
+const MOST_BELOW: f64 = 2.0;
 /// Width of a support at least, in metres.
-const NARROWEST: f64 = 0.2;
+const NARROWEST: f64 = 0.25;
+/// What makes a plane over a floor a table rather than the top of a box: it is level (cosine), this far
+/// above the floor, and this wide, in metres.
+const LEVEL: f64 = 0.99;
+const TABLE_HEIGHT: f64 = 0.3;
+const TABLE_WIDTH: f64 = 0.5;
+/// The floor's points, at most, in multiples of the table's.
+const TABLE_SHARE: usize = 2;
 /// Points of the cloud that the search sees, and that the last refinement sees.
 const SAMPLE: usize = 6000;
 const FINE_SAMPLE: usize = 20_000;
+/// Points from which a support's outline is found.
+const COARSE_SAMPLE: usize = 5000;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
+/// Gap that things on the support may make in what is seen of it, in metres.
+const OBJECT_GAP: f64 = 0.12;
 
 /// The support that was found.
 #[derive(Clone, Debug)]
@@ -123,29 +134,42 @@ pub(crate) fn find(
     let all = readings(cloud, &sample, &sight);
     let mut planes = dominant(&all, 6, random);
     planes.sort_by_key(|c| std::cmp::Reverse(c.members.len()));
+    let wide = |candidate: &Candidate, random: &mut Stream| {
+        let support = refine(cloud, indices, candidate, &sight, random)?;
+        let width = support.outline.diameter();
+        Some((support, width))
+    };
     let mut why = None;
     for candidate in &planes {
-        match judge(candidate, &all, &sight) {
-            Ok(()) => {
-                let support = refine(cloud, indices, candidate, &sight, random);
-                let Some(support) = support else { continue };
-                let width = support.outline.diameter();
-                if width >= NARROWEST {
-                    return Ok((support, sight));
-                }
-                why.get_or_insert(NoTable::Narrow { width, limit: NARROWEST });
-            }
-            Err(reason) => {
-                why.get_or_insert(reason);
-            }
+        if let Err(reason) = judge(candidate, &all, &sight) {
+            why.get_or_insert(reason);
+            continue;
         }
+        let Some((support, width)) = wide(candidate, random) else { continue };
+        if width < NARROWEST {
+            why.get_or_insert(NoTable::Narrow { width, limit: NARROWEST });
+            continue;
+        }
+        // A table is preferred to the floor that it stands on, though less of it may be seen.
+        let above = planes.iter().filter(|c| {
+            let rise = candidate.offset - c.offset;
+            c.normal.dot(&candidate.normal) > LEVEL
+                && rise > TABLE_HEIGHT
+                && c.members.len() > candidate.members.len() / TABLE_SHARE
+        });
+        let table = above.filter_map(|c| wide(c, random)).find(|(_, width)| *width > TABLE_WIDTH);
+        return Ok((table.map_or(support, |(table, _)| table), sight));
     }
     Err(why.unwrap_or(NoTable::NoPlane))
 }
 
 /// Whether a plane can be a support.
 fn judge(candidate: &Candidate, all: &[Reading], sight: &Sight) -> Result<(), NoTable> {
-    let share = candidate.members.len() as f64 / all.len() as f64;
+    let inside = all.iter().filter(|r| {
+        let (h, width) = candidate.height(r);
+        h.abs() < width
+    });
+    let share = inside.count() as f64 / all.len() as f64;
     let beneath = all.iter().filter(|r| {
         let (h, width) = candidate.height(r);
         h < -3.0 * width - 0.02
@@ -189,35 +213,51 @@ fn refine(
     let sample = spread(indices, FINE_SAMPLE, random);
     let all = readings(cloud, &sample, sight);
     let (mut normal, mut offset) = (candidate.normal, candidate.offset);
-    let (mut share, mut relative, mut noise) = (1.0, 0.0, 0.0);
-    let mut column = Vec::with_capacity(all.len());
-    for _ in 0..4 {
-        (normal, offset) = least_squares(all.iter(), &normal, offset, share)?;
-        let heights = || all.iter().map(|r| height(&normal, offset, r));
-        let inside = || heights().filter(|(h, width)| h.abs() < *width);
-        relative = deviation(&mut column, inside().map(|(h, width)| h / width))?;
-        noise = deviation(&mut column, inside().map(|(h, _)| h))?;
-        share = (2.5 * relative).clamp(0.05, 1.0);
-    }
-    // Back from the eye's frame to the cloud's.
+    let (mut relative, mut noise) = (0.0, 0.0);
+    // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
+    let place = |r: &Reading| Point::from(r.ray + origin);
+    let mut column = Vec::with_capacity(all.len());
+    for _ in 0..2 {
+        // The plane runs on through other things, which would tilt it: only its main piece counts.
+        let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
+        let outline = main_piece(&all, &normal, offset, PIECE_GAP, |r| ground.spot(&place(r)))?;
+        let on = |r: &&Reading| outline.depth(&ground.spot(&place(r))) >= 0.0;
+        let inside: Vec<Reading> = all.iter().filter(on).copied().collect();
+        let mut share = 1.0;
+        for _ in 0..3 {
+            (normal, offset) = least_squares(inside.iter(), &normal, offset, share)?;
+            let heights = || inside.iter().map(|r| height(&normal, offset, r));
+            let near = || heights().filter(|(h, width)| h.abs() < *width);
+            relative = deviation(&mut column, near().map(|(h, width)| h / width))?;
+            noise = deviation(&mut column, near().map(|(h, _)| h))?;
+            share = (2.5 * relative).clamp(0.05, 1.0);
+        }
+    }
     let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
     let ground = Ground::of(&plane);
-    let inside = sample.iter().zip(&all).filter(|(_, r)| {
-        let (h, width) = height(&normal, offset, r);
+    let outline = main_piece(&all, &normal, offset, OBJECT_GAP, |r| ground.spot(&place(r)))?;
+    Some(Support { plane, noise, relative, outline })
+}
+
+/// Outline of the largest piece of the readings in a plane.
+fn main_piece(
+    all: &[Reading],
+    normal: &Direction,
+    offset: f64,
+    gap: f64,
+    foot: impl Fn(&Reading) -> Spot,
+) -> Option<Outline> {
+    let step = all.len() / COARSE_SAMPLE + 1;
+    let inside = all.iter().step_by(step).filter(|r| {
+        let (h, width) = height(normal, offset, r);
         h.abs() < width
     });
-    let feet: Vec<Point> = inside
-        .filter_map(|(i, _)| cloud.points.get(*i as usize))
-        .map(|p| ground.spot(p))
-        .map(|[x, y]| Point::new(x, y, 0.0))
-        .collect();
-    // The plane runs on through other things: only its main piece is the support.
-    let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, PIECE_GAP)?.components();
+    let feet: Vec<Point> = inside.map(foot).map(|[x, y]| Point::new(x, y, 0.0)).collect();
+    let pieces = VoxelGrid::new(&feet, 0..feet.len() as u32, gap)?.components();
     let main = pieces.into_iter().max_by_key(Vec::len)?;
     let spots = main.iter().filter_map(|i| feet.get(*i as usize));
-    let outline = Outline::around(&mut spots.map(|p| [p.x, p.y]).collect());
-    Some(Support { plane, noise, relative, outline })
+    Some(Outline::around(&mut spots.map(|p| [p.x, p.y]).collect()))
 }
 
 /// Standard deviation about zero by the median of the absolute values, which outliers do not move.

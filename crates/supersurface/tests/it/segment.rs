@@ -260,3 +260,22 @@ fn absurd_sizes_neither_panic_nor_hang() {
     }
     assert_eq!(segment(&spoilt, &SegmentOptions::default()).unwrap().objects.len(), 3);
 }
+
+#[test]
+fn noise_takes_no_longer_than_a_scene() {
+    // A table under thousands of crumbs.
+    let mut random = Stream::new(11, 0);
+    let (mut cloud, _) = look(&scene(0.9).1[..1], 11);
+    for row in (0..SIZE[1]).step_by(8) {
+        for column in (0..SIZE[0]).step_by(8) {
+            let lift = random.between(0.7, 0.95);
+            for k in 0..36 {
+                let i = (row + k / 6) * SIZE[0] + column + k % 6;
+                cloud.points[i] *= lift;
+            }
+        }
+    }
+    for grid in [cloud.grid, None] {
+        let _ = segment(&PointCloud { grid, ..cloud.clone() }, &SegmentOptions::default());
+    }
+}
