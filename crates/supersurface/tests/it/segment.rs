@@ -139,6 +139,16 @@ fn objects_on_a_table_are_found_from_all_heights() {
 }
 
 #[test]
+fn a_table_is_found_from_straight_above() {
+    for pitch in [1.4, 1.5, std::f64::consts::FRAC_PI_2] {
+        let things = &scene(pitch).1[..3];
+        let (cloud, truth) = look(things, 1);
+        check(&cloud, &truth, 3);
+        check(&PointCloud { grid: None, ..cloud }, &truth, 3);
+    }
+}
+
+#[test]
 fn the_frame_and_the_organisation_do_not_matter() {
     let (_, things) = scene(0.7);
     let (cloud, truth) = look(&things, 2);
