@@ -7,8 +7,8 @@
 //! - does it *hang*: is the support seen right under it?
 //! - is the space between it and another piece *hidden* by a third?
 
-use crate::Point;
 use crate::segment::clusters::Class;
+use crate::{Point, Vector};
 
 /// An organised cloud and the piece that each pixel belongs to.
 #[derive(Clone, Debug)]
@@ -19,8 +19,8 @@ pub(crate) struct Image<'a> {
     eye: Point,
     /// The piece of each pixel, or `NOBODY`.
     owner: Vec<u32>,
-    /// First and last column, first and last row of the image proper.
-    frame: [usize; 4],
+    /// First and last column, first and last row of the image proper, where the sensor's view ends.
+    frame: Option<[usize; 4]>,
 }
 
 /// The owner of pixels that are in no piece.
@@ -33,20 +33,27 @@ const STRIP: usize = 14;
 const ACROSS: usize = 6;
 /// Pixels by which a piece may grow.
 const GROWTH: usize = 3;
+/// Way behind per way down from which the view is too oblique to miss a side: 22 degrees off the vertical.
+const SLANT: f64 = 0.4;
 /// A range that is nearer by this is in front, in metres.
 const IN_FRONT: f64 = 0.008;
 
 impl<'a> Image<'a> {
-    /// The image of a cloud; `None` unless it has `width` columns in every row.
+    /// The image of a cloud; `None` unless it has `width` columns in every row. `bordered` says that
+    /// the sensor's view ends at the image's border.
     pub(crate) fn new(
         points: &'a [Point],
         class: &'a [Class],
         width: usize,
         eye: Point,
+        bordered: bool,
     ) -> Option<Self> {
         let whole = width > 0 && points.len() == class.len() && points.len().is_multiple_of(width);
         let owner = vec![NOBODY; points.len()];
-        whole.then(|| Self { points, class, width, eye, owner, frame: frame(class, width) })
+        whole.then(|| {
+            let frame = bordered.then(|| frame(class, width));
+            Self { points, class, width, eye, owner, frame }
+        })
     }
 
     /// Says that the pixels belong to piece number `piece`.
@@ -133,14 +140,18 @@ impl<'a> Image<'a> {
         (2 * front.len() > columns).then(|| front[0])
     }
 
-    /// True when under most of a piece's lower edge something farther is seen, not what it stands on.
-    pub(crate) fn hangs(&self, pixels: &[u32]) -> bool {
+    /// True when under most of a piece's lower edge something is seen that is well behind it: were there
+    /// a side below the edge, it would be seen instead. From straight above nothing can be told.
+    pub(crate) fn hangs(&self, pixels: &[u32], up: &Vector) -> bool {
         let (mut columns, mut free) = (0, 0);
         for i in self.lowest(pixels) {
             let reading = self.under(i, SKIP).find(|j| self.class[*j] != Class::Missing);
             if let Some(j) = reading {
                 columns += 1;
-                free += usize::from(self.range(j) > self.range(i) + 2.0 * IN_FRONT);
+                let step = self.points[j] - self.points[i];
+                let drop = -step.dot(up);
+                let behind = (step + up * drop).norm() > SLANT * drop.abs();
+                free += usize::from(behind && self.range(j) > self.range(i) + 2.0 * IN_FRONT);
             }
         }
         columns >= 3 && 10 * free > 7 * columns
@@ -163,7 +174,7 @@ impl<'a> Image<'a> {
     /// How much of a piece lies along the border of the image: the diagonal of the box of its points
     /// there, in metres.
     pub(crate) fn cut(&self, pixels: &[u32]) -> f64 {
-        let [left, right, top, bottom] = self.frame;
+        let Some([left, right, top, bottom]) = self.frame else { return 0.0 };
         let at_border = |i: &&u32| {
             let (u, v) = (**i as usize % self.width, **i as usize / self.width);
             u < left + 3 || u + 3 > right || v < top + 3 || v + 3 > bottom

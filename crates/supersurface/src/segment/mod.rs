@@ -14,16 +14,21 @@ mod masks;
 mod objects;
 mod piece;
 mod planes;
+mod raster;
 mod sight;
 mod table;
 
 pub use masks::{segment_masks, segment_whole};
 pub use table::NoTable;
 
+use crate::Point;
 use crate::cloud::PointCloud;
 use crate::numeric::random::Stream;
 use crate::segment::clusters::Class;
 use crate::segment::image::Image;
+use crate::segment::raster::Raster;
+use crate::segment::sight::Sight;
+use crate::segment::table::Support;
 use crate::shape::Plane;
 
 /// What a cloud is made of. Indices into the cloud's points; never copies.
@@ -204,31 +209,56 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
     let mut random = Stream::new(options.seed, 0);
     let (support, sight) =
         table::find(cloud, &seen, &mut random).map_err(|why| SegmentError::NoSupport { why })?;
-    let mut class = vec![Class::Missing; cloud.points.len()];
-    for i in &seen {
-        let (Some(p), Some(c)) = (cloud.points.get(*i as usize), class.get_mut(*i as usize)) else {
-            continue;
-        };
-        let height = support.plane.height(p) / support.margin(p, &sight, options);
-        *c = if height > 1.0 {
-            Class::Above
-        } else if height > 0.5 {
-            Class::Low
-        } else {
-            Class::Other
-        };
-    }
-    let pieces = clusters::pieces(cloud, &class, &sight, options.gap, 20);
-    let image = match (sight::grid(cloud), sight.eye) {
-        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
-        _ => None,
+    let normal = support.plane.normal().into_inner();
+    let raster = match sight::grid(cloud) {
+        Some(_) => None,
+        None => Raster::of(cloud, &seen, &sight, &normal, &mut random),
     };
-    let (objects, dropped) =
-        objects::gather(&cloud.points, pieces, &support, &sight, image, options);
+    let (objects, dropped) = match raster {
+        None => part(cloud, true, &support, &sight, options),
+        Some(raster) => {
+            let sight = Sight { pixel: Some(raster.pixel), ..sight };
+            let (mut objects, mut dropped) = part(&raster.cloud, false, &support, &sight, options);
+            objects.iter_mut().for_each(|o| *o = raster.back(o));
+            dropped.iter_mut().for_each(|d| d.points = raster.back(&d.points));
+            (objects, dropped)
+        }
+    };
     Ok(Segmentation {
         support: Some(support.plane),
         support_noise: support.noise,
         objects,
         dropped,
     })
+}
+
+/// The objects over a support, and what was left out. `bordered` says that the sensor's view ends at the
+/// border of the cloud's grid.
+fn part(
+    cloud: &PointCloud,
+    bordered: bool,
+    support: &Support,
+    sight: &Sight,
+    options: &SegmentOptions,
+) -> (Vec<Vec<u32>>, Vec<Dropped>) {
+    let classify = |p: &Point| {
+        if !sight::seen(p) {
+            return Class::Missing;
+        }
+        let height = support.plane.height(p) / support.margin(p, sight, options);
+        if height > 1.0 {
+            Class::Above
+        } else if height > 0.5 {
+            Class::Low
+        } else {
+            Class::Other
+        }
+    };
+    let class: Vec<Class> = cloud.points.iter().map(classify).collect();
+    let pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
+    let image = match (sight::grid(cloud), sight.eye) {
+        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye, bordered),
+        _ => None,
+    };
+    objects::gather(&cloud.points, pieces, support, sight, image, options)
 }

@@ -66,7 +66,7 @@ pub(crate) fn gather(
     }
     for k in 0..pieces.len() {
         let Some(piece) = pieces[k].take() else { continue };
-        let part_of = owner(k, &piece, &pieces, &faults, image.as_ref(), &ground);
+        let part_of = owner(k, &piece, &pieces, &faults, image.as_ref(), support, &ground);
         let Some((j, other)) = part_of.and_then(|j| Some((j, pieces[j].take()?))) else {
             pieces[k] = Some(piece);
             continue;
@@ -104,9 +104,11 @@ fn owner(
     pieces: &[Option<Piece>],
     faults: &[Option<DropReason>],
     image: Option<&Image<'_>>,
+    support: &Support,
     ground: &Ground,
 ) -> Option<usize> {
-    let hangs = piece.aloft() && image.is_some_and(|i| i.hangs(&piece.points));
+    let up = support.plane.normal();
+    let hangs = piece.aloft() && image.is_some_and(|i| i.hangs(&piece.points, &up));
     let cup = |inner: &Piece, outer: usize| {
         let front = || image?.before(&inner.points, inner.hollow > ALL_HOLLOW);
         inner.hollow > HOLLOW && front() == Some(outer)
@@ -225,6 +227,7 @@ fn slight(
         return Some(DropReason::CutOff);
     }
     let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH);
-    let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points));
+    let up = support.plane.normal();
+    let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points, &up));
     hangs.then_some(DropReason::Hanging)
 }
