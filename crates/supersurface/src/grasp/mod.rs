@@ -3,9 +3,19 @@
 //! The tool frame (TCP) has its origin midway between the pads at pad centre (suction: at the centre of
 //! the uncompressed lip), z approaches, x closes, y = z × x.
 
+mod check;
 mod gripper;
+mod hole;
+mod plan;
+mod quality;
+mod sight;
+mod suction;
+mod surroundings;
+mod sweep;
 
 pub use gripper::{Boxed, Cup, Gripper, InvalidGripper, Jaw, Kind};
+pub use plan::{GraspOptions, plan};
+pub use surroundings::Surroundings;
 
 use crate::{Direction, Point, Pose};
 
@@ -35,27 +45,61 @@ pub struct Grasp {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
+    /// Too little of the object was seen.
+    #[error("too few points to plan on")]
+    NoPoints,
     /// Every way to close needs more than the jaw has.
     #[error("wider than the jaw: {needed:.3} m against {available:.3} m")]
     TooWide {
-        /// Narrowest opening that would do, in metres.
+        /// Least width of the object over the ways to close, in metres.
         needed: f64,
         /// Largest opening of the jaw, in metres.
         available: f64,
     },
+    /// Nowhere do two sides face the pads well enough.
+    #[error("no two opposite sides that the pads could press on")]
+    NoContact,
+    /// Every grasp runs into something on its way in.
+    #[error(
+        "every way in is blocked: {table} grasps meet the table, {object} the object itself, \
+         {neighbour} a neighbour"
+    )]
+    Blocked {
+        /// Grasps that meet the table.
+        table: usize,
+        /// Grasps that meet the object, or what nobody saw behind it.
+        object: usize,
+        /// Grasps that meet something else.
+        neighbour: usize,
+    },
+    /// The cup seals nowhere.
+    #[error(
+        "no flat spot for a cup of {:.0} mm: {}", 2e3 * radius, near_miss(*gap, *tolerance)
+    )]
+    NoSeal {
+        /// Radius of the lip, in metres.
+        radius: f64,
+        /// Least gap under the lip, in metres; infinite where the lip never lies on the object.
+        gap: f64,
+        /// Gap that the rubber closes, in metres.
+        tolerance: f64,
+    },
+    /// The cup seals, but not where it could carry the object.
+    #[error("a cup of {:.0} mm seals only where the object's weight would peel it off", 2e3 * lip_radius)]
+    TooHeavy {
+        /// Radius of the lip, in metres.
+        lip_radius: f64,
+    },
 }
 
-/// stub
-#[derive(Clone, Debug, Default)]
-pub struct GraspOptions {}
-/// stub
-#[derive(Clone, Debug)]
-pub struct Surroundings<'a> { _c: &'a crate::cloud::PointCloud }
-impl<'a> Surroundings<'a> {
-    /// stub
-    pub fn new(c: &'a crate::cloud::PointCloud, _s: &'a crate::segment::Segmentation) -> Self { Self { _c: c } }
-}
-/// stub
-pub fn plan(_object: usize, _fit: Option<&crate::fit::Fit>, _around: &Surroundings<'_>, _g: &Gripper, _o: &GraspOptions) -> Result<Vec<Grasp>, Refusal> {
-    Err(Refusal::TooWide { needed: 0.0, available: 0.0 })
+fn near_miss(gap: f64, tolerance: f64) -> String {
+    if gap.is_finite() {
+        format!(
+            "the least gap under the lip is {:.1} mm against {:.1} mm",
+            1e3 * gap,
+            1e3 * tolerance
+        )
+    } else {
+        "its lip nowhere lies on the object all around".to_owned()
+    }
 }

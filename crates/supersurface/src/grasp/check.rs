@@ -1,0 +1,105 @@
+//! Does the gripper meet anything on its way in: its boxes, swept along the approach, against the table,
+//! neighbours, the object itself and what no ray passed through.
+
+use super::gripper::{Boxed, Gripper, Kind};
+use super::surroundings::Local;
+use crate::{Point, Pose, Vector};
+
+/// Clearance kept to the table, in metres.
+const TABLE_MARGIN: f64 = 0.0015;
+/// Clearance kept to points.
+const POINT_MARGIN: f64 = 0.001;
+/// Points of the object or its hidden side that may lie within the boxes: strays.
+const ALLOWED: usize = 2;
+/// Heights over the grasp at which the boxes are looked at while they come in.
+const SWEEP: [f64; 4] = [0.0, 0.025, 0.05, 0.08];
+
+/// What a gripper runs into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Obstruction {
+    Table,
+    Object,
+    Neighbour,
+}
+
+/// Boxes of a gripper at an opening, in the tool frame. For a jaw `gap` is the distance between the pads.
+pub(super) fn boxes(gripper: &Gripper, gap: f64) -> Vec<Boxed> {
+    let mut out = gripper.body.clone();
+    if let Kind::Jaw(jaw) = &gripper.kind {
+        let advance = tip_advance(&jaw.tip_arc, gap);
+        for side in [1.0, -1.0] {
+            for part in &jaw.finger {
+                let mut moved = *part;
+                moved.center.x = side * (part.center.x + 0.5 * gap);
+                moved.center.z += advance;
+                out.push(moved);
+            }
+        }
+    }
+    out
+}
+
+/// How far the tips of a linkage stand out at an opening, against the closed jaw.
+pub(super) fn tip_advance(arc: &[[f64; 2]], opening: f64) -> f64 {
+    let (Some(first), Some(last)) = (arc.first(), arc.last()) else { return 0.0 };
+    if opening <= first[0] {
+        return first[1];
+    }
+    for pair in arc.windows(2) {
+        let [[x0, z0], [x1, z1]] = [pair[0], pair[1]];
+        if opening <= x1 {
+            return z0 + (z1 - z0) * (opening - x0) / (x1 - x0);
+        }
+    }
+    last[1]
+}
+
+/// The first obstruction of a gripper with these boxes at a pose in the table's frame.
+pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option<Obstruction> {
+    if local.has_table && boxes.iter().any(|b| lowest(b, pose) < TABLE_MARGIN) {
+        return Some(Obstruction::Table);
+    }
+    let inverse = pose.inverse();
+    let radius =
+        boxes.iter().map(|b| b.center.coords.norm() + 0.5 * b.size.norm()).fold(0.0, f64::max);
+    let reach = radius + SWEEP[SWEEP.len() - 1];
+    let origin = pose.translation.vector;
+    let meets = |p: &Point| {
+        if (p.coords - origin).norm_squared() > reach * reach {
+            return false;
+        }
+        let q = inverse * p;
+        boxes.iter().any(|b| {
+            let half = b.size * 0.5 + Vector::repeat(POINT_MARGIN);
+            let d = q - b.center;
+            d.x.abs() < half.x
+                && d.y.abs() < half.y
+                && SWEEP.iter().any(|s| (d.z + s).abs() < half.z)
+        })
+    };
+    let mut strays = 0;
+    for spot in &local.spots {
+        if meets(&spot.at) {
+            strays += 1;
+            if strays > ALLOWED {
+                return Some(Obstruction::Object);
+            }
+        }
+    }
+    let mut strays = 0;
+    for p in &local.obstacles {
+        if meets(p) {
+            strays += 1;
+            if strays > ALLOWED {
+                return Some(Obstruction::Neighbour);
+            }
+        }
+    }
+    None
+}
+
+/// Height of the lowest corner of a box.
+fn lowest(b: &Boxed, pose: &Pose) -> f64 {
+    let up = pose.rotation.inverse_transform_vector(&Vector::z());
+    (pose * b.center).z - 0.5 * up.abs().dot(&b.size)
+}

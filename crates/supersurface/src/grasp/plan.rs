@@ -1,0 +1,217 @@
+//! From candidates to ranked grasps: propose, judge, check, and keep what is diverse.
+
+use nalgebra::Translation3;
+
+use super::check::{Obstruction, boxes, obstruction, tip_advance};
+use super::gripper::{Cup, Gripper, Jaw, Kind};
+use super::hole::holes;
+use super::quality::{Candidate, Judged, judge};
+use super::suction::seals;
+use super::surroundings::{Local, Surroundings};
+use super::sweep::{narrowest, sweep};
+use super::{Grasp, Refusal};
+use crate::fit::Fit;
+use crate::{Direction, Point, Pose, Vector};
+
+/// How to plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GraspOptions {
+    /// Most grasps an object.
+    pub most: usize,
+    /// Grasps with a lesser score are left out, in [0, 1].
+    pub least_score: f64,
+}
+
+impl Default for GraspOptions {
+    fn default() -> Self {
+        Self { most: 20, least_score: 0.12 }
+    }
+}
+
+/// Two grasps nearer than this are one: metres and radians.
+const SAME_PLACE: f64 = 0.010;
+const SAME_TURN: f64 = 0.26;
+
+/// Ways to hold an object, best first; or why there is none.
+///
+/// `fit` is what is known of the object's hidden side; without one, or where it fits badly, the points alone
+/// decide. Poses are in the frame of the cloud.
+pub fn plan(
+    object: usize,
+    fit: Option<&Fit>,
+    around: &Surroundings<'_>,
+    gripper: &Gripper,
+    options: &GraspOptions,
+) -> Result<Vec<Grasp>, Refusal> {
+    let local =
+        around.local(object, fit).filter(|l| l.spots.len() >= 12).ok_or(Refusal::NoPoints)?;
+    let mut found = match &gripper.kind {
+        Kind::Jaw(jaw) => by_jaw(&local, jaw, gripper, options)?,
+        Kind::Suction(cup) => by_suction(&local, cup, fit, gripper, options)?,
+    };
+    found.truncate(options.most);
+    for grasp in &mut found {
+        grasp.pose = around.frame * grasp.pose;
+        for (point, normal) in &mut grasp.contacts {
+            *point = around.frame * *point;
+            *normal = Direction::new_unchecked(around.frame * normal.into_inner());
+        }
+    }
+    Ok(found)
+}
+
+/// How often a candidate met what.
+#[derive(Default)]
+struct Met {
+    table: usize,
+    object: usize,
+    neighbour: usize,
+}
+
+fn by_jaw(
+    local: &Local,
+    jaw: &Jaw,
+    gripper: &Gripper,
+    options: &GraspOptions,
+) -> Result<Vec<Grasp>, Refusal> {
+    let mut candidates = sweep(local, jaw);
+    candidates.extend(holes(local, jaw));
+    if candidates.is_empty() {
+        return Err(match narrowest(local) {
+            width if width + jaw.clearance > jaw.max_opening => {
+                Refusal::TooWide { needed: width, available: jaw.max_opening }
+            }
+            _ => Refusal::NoContact,
+        });
+    }
+    let mut judged: Vec<(Candidate, Judged)> = candidates
+        .into_iter()
+        .filter_map(|c| judge(&c, local, jaw).map(|j| (c, j)))
+        .filter(|(_, j)| j.score >= options.least_score)
+        .collect();
+    judged.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+    if judged.is_empty() {
+        let width = narrowest(local);
+        return Err(if width + jaw.clearance > jaw.max_opening {
+            Refusal::TooWide { needed: width, available: jaw.max_opening }
+        } else {
+            Refusal::NoContact
+        });
+    }
+    let mut met = Met::default();
+    let mut out: Vec<Grasp> = Vec::new();
+    for (candidate, judged) in judged {
+        if out.len() == options.most {
+            break;
+        }
+        let grasp = jaw_grasp(&candidate, judged, jaw);
+        if out.iter().any(|other| same(&other.pose, &grasp.pose)) {
+            continue;
+        }
+        let gap = if candidate.inside { 0.0 } else { grasp.opening };
+        match obstruction(&boxes(gripper, gap), &grasp.pose, local) {
+            None => out.push(grasp),
+            Some(Obstruction::Table) => met.table += 1,
+            Some(Obstruction::Object) => met.object += 1,
+            Some(Obstruction::Neighbour) => met.neighbour += 1,
+        }
+    }
+    if out.is_empty() { Err(blocked(&met)) } else { Ok(out) }
+}
+
+fn blocked(met: &Met) -> Refusal {
+    Refusal::Blocked { table: met.table, object: met.object, neighbour: met.neighbour }
+}
+
+fn jaw_grasp(candidate: &Candidate, judged: Judged, jaw: &Jaw) -> Grasp {
+    let opening = if candidate.inside {
+        jaw.outer_width_closed.unwrap_or(candidate.width)
+    } else {
+        (candidate.width + 2.0 * jaw.clearance + 0.004).min(jaw.max_opening)
+    };
+    // the tool frame of a linkage is where the pads are when closed
+    let advance = if candidate.inside { 0.0 } else { tip_advance(&jaw.tip_arc, candidate.width) };
+    let pose = candidate.pose * Translation3::from(-Vector::z() * advance);
+    Grasp {
+        pose,
+        opening,
+        contact_width: candidate.width,
+        inside: candidate.inside,
+        score: judged.score,
+        terms: judged.terms,
+        source: candidate.source,
+        contacts: judged.contacts,
+    }
+}
+
+fn by_suction(
+    local: &Local,
+    cup: &Cup,
+    fit: Option<&Fit>,
+    gripper: &Gripper,
+    options: &GraspOptions,
+) -> Result<Vec<Grasp>, Refusal> {
+    let volume = match fit.filter(|_| local.trusted) {
+        Some(fit) => fit.surface.shape().volume(),
+        None => box_volume(local),
+    };
+    let (seals, miss) = seals(local, cup, volume);
+    if seals.is_empty() {
+        return Err(Refusal::NoSeal {
+            radius: cup.lip_radius,
+            gap: miss.gap,
+            tolerance: cup.lip_tolerance,
+        });
+    }
+    let parts = boxes(gripper, 0.0);
+    let mut met = Met::default();
+    let mut out: Vec<Grasp> = Vec::new();
+    for seal in seals.into_iter().filter(|s| s.score >= options.least_score) {
+        if out.len() == options.most {
+            break;
+        }
+        if out.iter().any(|other| same(&other.pose, &seal.pose)) {
+            continue;
+        }
+        match obstruction(&parts, &seal.pose, local) {
+            None => out.push(Grasp {
+                pose: seal.pose,
+                opening: 0.0,
+                contact_width: 0.0,
+                inside: false,
+                score: seal.score,
+                terms: seal.terms,
+                source: seal.source,
+                contacts: vec![seal.contact],
+            }),
+            Some(Obstruction::Table) => met.table += 1,
+            Some(Obstruction::Object) => met.object += 1,
+            Some(Obstruction::Neighbour) => met.neighbour += 1,
+        }
+    }
+    match (out.is_empty(), met.table + met.object + met.neighbour) {
+        (false, _) => Ok(out),
+        (true, 0) => Err(Refusal::TooHeavy { lip_radius: cup.lip_radius }),
+        (true, _) => Err(blocked(&met)),
+    }
+}
+
+/// Two thirds of the box of what was seen, down to the table.
+fn box_volume(local: &Local) -> f64 {
+    let bounds = local.spots.iter().fold(None, |b: Option<(Point, Point)>, s| {
+        Some(b.map_or((s.at, s.at), |(l, h)| (l.inf(&s.at), h.sup(&s.at))))
+    });
+    bounds.map_or(0.0, |(low, high)| {
+        let size = high - low;
+        2.0 / 3.0 * size.x * size.y * (local.heights[1] - local.heights[0]).max(size.z)
+    })
+}
+
+/// The same grasp, also when turned by half a turn about its approach.
+fn same(a: &Pose, b: &Pose) -> bool {
+    let place = (a.translation.vector - b.translation.vector).norm();
+    let turn = a.rotation.angle_to(&b.rotation);
+    let flipped =
+        a.rotation * nalgebra::UnitQuaternion::from_scaled_axis(Vector::z() * std::f64::consts::PI);
+    place < SAME_PLACE && turn.min(flipped.angle_to(&b.rotation)) < SAME_TURN
+}

@@ -1,0 +1,277 @@
+//! A scene as grippers meet it: what was seen, what no ray passed through, and the table, in a frame whose z
+//! axis points up from the table.
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
+
+use super::sight::Sight;
+use crate::cloud::{PointCloud, VoxelGrid, normals};
+use crate::fit::Fit;
+use crate::segment::Segmentation;
+use crate::shape::{Implicit, Plane};
+use crate::{Direction, Point, Pose, Vector};
+
+/// Spacing of the points that stand for a seen surface, in metres.
+const SPACING: f64 = 0.003;
+/// Spacing of the points that stand for obstacles and for what was not seen.
+const COARSE: f64 = 0.005;
+/// Radius in which a normal is taken.
+const NORMAL_RADIUS: f64 = 0.009;
+/// A fit decides about hidden sides up to this median residual, and from this share of inliers.
+const TRUSTED_RESIDUAL: f64 = 0.003;
+const TRUSTED_SHARE: f64 = 0.8;
+
+/// A place on (or in) an object.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// In the frame of the table.
+    pub(super) at: Point,
+    /// Outward; zero where it is not known.
+    pub(super) normal: Vector,
+    pub(super) seen: bool,
+}
+
+/// Everything that grasp planning shares between the objects of a scene.
+#[derive(Clone, Debug)]
+pub struct Surroundings<'a> {
+    cloud: &'a PointCloud,
+    segmentation: &'a Segmentation,
+    /// The table's frame in the cloud's frame.
+    pub(super) frame: Pose,
+    /// True when z = 0 of that frame is a table.
+    pub(super) has_table: bool,
+    sight: Option<Sight>,
+}
+
+/// One object with what is around it, in the frame of the table.
+#[derive(Clone, Debug)]
+pub(super) struct Local {
+    pub(super) spots: Vec<Spot>,
+    /// Points of everything else nearby, and of what hides behind it.
+    pub(super) obstacles: Vec<Point>,
+    /// Middle of the object's matter, as far as it is known.
+    pub(super) centre: Point,
+    /// Heights of its lowest and highest spot.
+    pub(super) heights: [f64; 2],
+    pub(super) has_table: bool,
+    /// True when the hidden side comes from a fit that can be trusted.
+    pub(super) trusted: bool,
+}
+
+impl<'a> Surroundings<'a> {
+    /// Looks at a scene once, for all its objects and grippers.
+    pub fn new(cloud: &'a PointCloud, segmentation: &'a Segmentation) -> Self {
+        let points = || segmentation.objects.iter().flatten().filter_map(|i| get(cloud, *i));
+        let count = points().count().max(1) as f64;
+        let middle = Point::from(points().map(|p| p.coords).sum::<Vector>() / count);
+        let radius = points().map(|p| (p - middle).norm()).fold(0.0, f64::max) + 0.1;
+        let frame = table_frame(segmentation.support.as_ref(), cloud.viewpoint, &middle);
+        let sight = Sight::new(cloud, &middle, radius);
+        Self { cloud, segmentation, frame, has_table: segmentation.support.is_some(), sight }
+    }
+
+    /// The object of an index; `None` for one without points.
+    pub(super) fn local(&self, object: usize, fit: Option<&Fit>) -> Option<Local> {
+        let indices = self.segmentation.objects.get(object)?;
+        let thin: Vec<u32> = thinned(self.cloud, indices, SPACING);
+        let inward = self.frame.inverse();
+        let mut spots: Vec<Spot> = Vec::with_capacity(2 * thin.len());
+        for (i, n) in thin.iter().zip(normals(self.cloud, &thin, NORMAL_RADIUS)) {
+            let at = inward * get(self.cloud, *i)?;
+            let normal = n.map_or(Vector::zeros(), |n| inward * n.into_inner());
+            spots.push(Spot { at, normal, seen: true });
+        }
+        let (low, high) = spots.iter().fold(None, |b: Option<(Point, Point)>, s| {
+            Some(b.map_or((s.at, s.at), |(l, h)| (l.inf(&s.at), h.sup(&s.at))))
+        })?;
+        let obstacles = self.obstacles(indices, &low, &high);
+        let trusted =
+            fit.filter(|f| f.residual < TRUSTED_RESIDUAL && f.inlier_share() > TRUSTED_SHARE);
+        let seen = spots.len();
+        match trusted {
+            Some(fit) => self.hidden_by_fit(fit, &low, &high, &mut spots),
+            None => self.hidden_columns(&mut spots),
+        }
+        let centre = match trusted {
+            Some(fit) => inward * Point::from(fit.surface.pose().translation.vector),
+            // between what was seen and what it stands on
+            None => {
+                let mean =
+                    |s: &[Spot]| s.iter().map(|s| s.at.coords).sum::<Vector>() / s.len() as f64;
+                let all = mean(&spots);
+                Point::from(if spots.len() > seen {
+                    0.5 * (mean(&spots[..seen]) + all)
+                } else {
+                    all
+                })
+            }
+        };
+        let floor = if self.has_table { 0.0 } else { low.z };
+        Some(Local {
+            spots,
+            obstacles,
+            centre,
+            heights: [floor.min(low.z), high.z],
+            has_table: self.has_table,
+            trusted: trusted.is_some(),
+        })
+    }
+
+    fn is_free(&self, at: &Point) -> bool {
+        self.sight.as_ref().is_some_and(|s| s.is_free(&(self.frame * at)))
+    }
+
+    /// The sides of a trusted body that no point shows and no ray disproves.
+    fn hidden_by_fit(&self, fit: &Fit, low: &Point, high: &Point, spots: &mut Vec<Spot>) {
+        let inward = self.frame.inverse();
+        let surface = &fit.surface;
+        let shape = surface.shape();
+        let seen = spots.len();
+        let size = (high - low).norm();
+        let half = Vector::from(shape.half_extents());
+        // a lattice on the box of the body, each point pulled on to the surface along the gradient
+        let step = (half.amax() / 12.0).max(SPACING);
+        let count = half.map(|h| (2.0 * h / step).ceil().clamp(2.0, 40.0) as i32);
+        for i in 0..=count.x {
+            for j in 0..=count.y {
+                for k in 0..=count.z {
+                    let share = Vector::new(
+                        f64::from(i) / f64::from(count.x),
+                        f64::from(j) / f64::from(count.y),
+                        f64::from(k) / f64::from(count.z),
+                    );
+                    let mut p =
+                        Point::from(half.component_mul(&(share * 2.0 - Vector::repeat(1.0))));
+                    let first = shape.first_order_distance(&p);
+                    if first.is_nan() || first.abs() > 0.75 * step {
+                        continue;
+                    }
+                    for _ in 0..2 {
+                        let gradient = shape.gradient(&p);
+                        let square = gradient.norm_squared();
+                        if square > 0.0 {
+                            p -= gradient * ((shape.gauge(&p) - 1.0) / square);
+                        }
+                    }
+                    let normal = shape.gradient(&p);
+                    let at = inward * (surface.pose() * p);
+                    if at.coords.iter().any(|v| !v.is_finite()) || (at - low).norm() > 3.0 * size {
+                        continue;
+                    }
+                    if (self.has_table && at.z < 0.0) || self.is_free(&at) {
+                        continue;
+                    }
+                    let normal = inward * (surface.pose() * normal);
+                    let normal = normal.try_normalize(0.0).unwrap_or_default();
+                    spots.push(Spot { at, normal, seen: false });
+                }
+            }
+        }
+        drop_near(spots, seen, SPACING);
+    }
+
+    /// Matter under what was seen, down to the table, where no ray passed.
+    fn hidden_columns(&self, spots: &mut Vec<Spot>) {
+        if !self.has_table {
+            return;
+        }
+        let seen: Vec<Point> = spots.iter().map(|s| s.at).collect();
+        let columns: Vec<Point> = seen.iter().map(|p| Point::new(p.x, p.y, 0.0)).collect();
+        let Some(grid) = VoxelGrid::new(&columns, 0..columns.len() as u32, COARSE) else { return };
+        for i in grid.representatives() {
+            let foot = columns[i as usize];
+            let mut top = 0.0f64;
+            grid.within(&foot, COARSE, |k, _| top = top.max(seen[k as usize].z));
+            let mut z = 0.5 * COARSE;
+            while z < top - COARSE {
+                let at = Point::new(foot.x, foot.y, z);
+                if !self.is_free(&at) {
+                    spots.push(Spot { at, normal: Vector::zeros(), seen: false });
+                }
+                z += COARSE;
+            }
+        }
+    }
+
+    /// Points within a gripper's reach that are not the object's, thinned; those of other things also stand
+    /// for what is under them.
+    fn obstacles(&self, indices: &[u32], low: &Point, high: &Point) -> Vec<Point> {
+        const REACH: f64 = 0.16;
+        let mut own = vec![false; self.cloud.points.len()];
+        for i in indices {
+            if let Some(o) = own.get_mut(*i as usize) {
+                *o = true;
+            }
+        }
+        let inward = self.frame.inverse();
+        let margin =
+            if self.has_table { 3.0 * self.segmentation.support_noise + 0.004 } else { f64::MIN };
+        let (low, high) = (low - Vector::repeat(REACH), high + Vector::repeat(REACH));
+        let near: Vec<Point> = self
+            .cloud
+            .points
+            .iter()
+            .zip(&own)
+            .filter(|(_, own)| !**own)
+            .map(|(p, _)| inward * p)
+            .filter(|p| p.z > margin && (0..3).all(|k| p[k] > low[k] && p[k] < high[k]))
+            .collect();
+        let mut out = Vec::new();
+        if let Some(grid) = VoxelGrid::new(&near, 0..near.len() as u32, COARSE) {
+            for i in grid.representatives() {
+                let p = near[i as usize];
+                out.push(p);
+                let mut z = p.z - 2.0 * COARSE;
+                while self.has_table && z > 0.0 {
+                    let below = Point::new(p.x, p.y, z);
+                    if self.is_free(&below) {
+                        break;
+                    }
+                    out.push(below);
+                    z -= 2.0 * COARSE;
+                }
+            }
+        }
+        out
+    }
+}
+
+fn get(cloud: &PointCloud, i: u32) -> Option<Point> {
+    cloud.points.get(i as usize).copied().filter(|p| p.coords.iter().all(|v| v.is_finite()))
+}
+
+fn thinned(cloud: &PointCloud, indices: &[u32], spacing: f64) -> Vec<u32> {
+    VoxelGrid::new(&cloud.points, indices.iter().copied(), spacing)
+        .map(|grid| grid.representatives().collect())
+        .unwrap_or_default()
+}
+
+/// Drops spots from index `seen` on that lie within `radius` of one before.
+fn drop_near(spots: &mut Vec<Spot>, seen: usize, radius: f64) {
+    let places: Vec<Point> = spots[..seen].iter().map(|s| s.at).collect();
+    let Some(grid) = VoxelGrid::new(&places, 0..seen as u32, radius) else { return };
+    let mut index = 0;
+    spots.retain(|s| {
+        index += 1;
+        let mut near = false;
+        if index > seen {
+            grid.within(&s.at, 1.5 * radius, |_, _| near = true);
+        }
+        !near
+    });
+}
+
+/// z along the table's normal, or towards the sensor where there is no table; the origin under `middle`.
+fn table_frame(support: Option<&Plane>, viewpoint: Option<Point>, middle: &Point) -> Pose {
+    let towards = || {
+        let view = viewpoint.map_or(Vector::z(), |p| p - middle);
+        Direction::try_new(view, 1e-12).unwrap_or(Vector::z_axis())
+    };
+    let (normal, origin) =
+        support.map_or_else(|| (towards(), *middle), |s| (s.normal(), s.project(middle)));
+    let z = normal.into_inner();
+    let helper = if z.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
+    let x = (helper - z * z.dot(&helper)).normalize();
+    let axes = Matrix3::from_columns(&[x, z.cross(&x), z]);
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+    Isometry3::from_parts(Translation3::from(origin.coords), rotation)
+}
