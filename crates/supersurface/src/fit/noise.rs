@@ -12,6 +12,18 @@ pub(super) enum Law {
     StudentT,
 }
 
+impl Law {
+    /// Scale above which deviations are no longer noise. A camera's is far below a twentieth of an object's
+    /// size: a surface that explains most points well and leaves the rest out is better than one that explains
+    /// all of them badly.
+    const fn largest_scale(self) -> f64 {
+        match self {
+            Self::Gaussian => 1.0,
+            Self::StudentT => 0.05,
+        }
+    }
+}
+
 /// The mixture `(1 - w) law(d; scale) + w density`, in normalised lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture {
@@ -87,7 +99,7 @@ impl Mixture {
                 belonging += inlier;
                 spread += inlier * weight * d * d;
             }
-            self.scale = (spread / belonging).sqrt().min(1.0).max(floor);
+            self.scale = (spread / belonging).sqrt().min(self.law.largest_scale()).max(floor);
             self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);
         }
     }
