@@ -52,11 +52,12 @@ pub(crate) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Read, Fault> 
                 columns = Some(named(place, &values, options)?);
                 continue;
             }
-            if let (1, Ok(count)) = (values.len(), first.parse::<u64>()) {
-                if cloud.points.is_empty() && place == 1 {
-                    warnings.push(format!("line 1 was taken as a number of points: {count}"));
-                    continue;
-                }
+            if let (1, Ok(count)) = (values.len(), first.parse::<u64>())
+                && cloud.points.is_empty()
+                && place == 1
+            {
+                warnings.push(format!("line 1 was taken as a number of points: {count}"));
+                continue;
             }
             columns = Some(unnamed(values.len(), options)?);
         }

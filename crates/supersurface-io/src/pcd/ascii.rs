@@ -47,10 +47,9 @@ pub(super) fn read(
             })
         };
         let [x, y, z] = wanted.position;
-        let colour = match wanted.colour {
-            Some(c) => Some(header.fields.get(c).map_or(0, |f| bits(f, at(c).unwrap_or(0.0)))),
-            None => None,
-        };
+        let colour = wanted
+            .colour
+            .map(|c| header.fields.get(c).map_or(0, |f| bits(f, at(c).unwrap_or(0.0))));
         let instance = wanted.label.map(at).transpose()?;
         rows.push([at(x)?, at(y)?, at(z)?], colour, instance);
     }

@@ -6,6 +6,7 @@ mod grippers;
 mod odd_files;
 
 /// The folder of shared data, when the environment names it.
+#[allow(clippy::print_stderr)]
 fn shared() -> Option<std::path::PathBuf> {
     let folder = std::env::var_os("SUPERSURFACE_SHARED").map(std::path::PathBuf::from);
     if folder.is_none() {

@@ -1,9 +1,10 @@
 //! What a cloud proves empty around one of its objects.
 //!
 //! The sensor saw each point along a free line of sight, so every point that is not on the object says that
-//! the object does not cross the segment from the viewpoint to it. Missing readings say nothing. Only
-//! directions next to the object matter; those within two cells of its outline are left out, as depth is
-//! not to be trusted there.
+//! the object does not cross the segment from the viewpoint to it. A direction without a reading says nothing by
+//! itself; but where such a gap lies between the object's outline and something that was seen farther out (the
+//! shadow of a projector, an edge), the object ends at its outline. Only directions next to the object
+//! matter; those within two cells of its outline are left out, as depth is not to be trusted there.
 
 use crate::cloud::PointCloud;
 use crate::{Point, Vector};
@@ -17,26 +18,18 @@ const MARGIN: isize = 2;
 /// Cells around the object's picture that are searched.
 const BORDER: f64 = 14.0;
 
-/// Points of the cloud that were seen beside the object or behind it, for [`super::View::free`]; none when
-/// the viewpoint is not known or lies within the object.
+/// Points of the cloud that were seen beside the object or behind it, for [`super::View::free`], more of them
+/// the nearer to its outline; none when the viewpoint is not known or lies within the object.
 pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
-    let mut mask = vec![false; picture.width * picture.height];
-    let mut taken = vec![false; picture.width * picture.height];
-    for i in object {
-        if let Some(cell) = cloud.points.get(*i as usize).and_then(|p| picture.cell(p)) {
-            mask[cell] = true;
-        }
-    }
-    let blocked = picture.dilated(&mask);
-    let mut found = Vec::new();
+    let blocked = picture.dilated(&picture.mask(cloud, object));
+    let mut read = vec![None; blocked.len()];
     let mut see = |p: &Point| {
         if let Some(cell) = picture.cell(p)
             && !blocked[cell]
-            && !taken[cell]
+            && read[cell].is_none()
         {
-            taken[cell] = true;
-            found.push(*p);
+            read[cell] = Some(*p);
         }
     };
     match (cloud.grid, bounds(cloud, object)) {
@@ -51,8 +44,18 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
         }
         _ => cloud.points.iter().for_each(see),
     }
+    let steps = picture.steps_outside(&blocked);
+    let depths = picture.depths(cloud, object);
+    let seen = (0..read.len()).filter_map(|c| read[c].map(|p| (steps[c], p)));
+    let gaps = picture
+        .gaps(&blocked, &read, depths[0])
+        .map(|c| (steps[c], picture.point(c, 3.0 * depths[1])));
+    let mut found: Vec<(u16, Point)> = seen.chain(gaps).collect();
+    found.sort_by_key(|f| f.0);
     let kept = found.len().min(MOST);
-    (0..kept).map(|i| found[i * found.len() / kept]).collect()
+    // squares: most of what a body could wrongly grow into lies next to what is seen of it
+    let at = |i: usize| i * i * found.len() / (kept * kept);
+    (0..kept).map(|i| found[at(i)].1).collect()
 }
 
 /// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with half its size to each
@@ -82,20 +85,11 @@ fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
 /// the readings is no hole in the object.
 pub fn outline_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
-    let mut mask = vec![false; picture.width * picture.height];
-    let mut farthest = 0.0f64;
-    for p in object.iter().filter_map(|i| cloud.points.get(*i as usize)) {
-        if let Some(cell) = picture.cell(p) {
-            mask[cell] = true;
-            farthest = farthest.max((p - picture.viewpoint).dot(&picture.forward));
-        }
-    }
-    let blocked = picture.dilated(&mask);
-    let ring = picture.dilated(&blocked);
-    let outside = picture.outside(&blocked);
-    let cells: Vec<usize> = (0..ring.len()).filter(|c| ring[*c] && outside[*c]).collect();
-    let kept = cells.len().min(MOST);
-    (0..kept).map(|i| picture.point(cells[i * cells.len() / kept], 3.0 * farthest)).collect()
+    let [_, farthest] = picture.depths(cloud, object);
+    let blocked = picture.dilated(&picture.mask(cloud, object));
+    let ring: Vec<usize> = picture.ring(&blocked).collect();
+    let kept = ring.len().min(MOST);
+    (0..kept).map(|i| picture.point(ring[i * ring.len() / kept], 3.0 * farthest)).collect()
 }
 
 /// The object as the sensor sees it: a pinhole picture towards its middle.
@@ -163,6 +157,54 @@ impl Picture {
         inside.then(|| v as usize * self.width + u as usize)
     }
 
+    /// The cells that hold points of the object.
+    fn mask(&self, cloud: &PointCloud, object: &[u32]) -> Vec<bool> {
+        let mut mask = vec![false; self.width * self.height];
+        for p in object.iter().filter_map(|i| cloud.points.get(*i as usize)) {
+            if let Some(cell) = self.cell(p) {
+                mask[cell] = true;
+            }
+        }
+        mask
+    }
+
+    /// Least and largest depth of the object's points.
+    fn depths(&self, cloud: &PointCloud, object: &[u32]) -> [f64; 2] {
+        let points = object.iter().filter_map(|i| cloud.points.get(*i as usize));
+        points
+            .map(|p| (p - self.viewpoint).dot(&self.forward))
+            .fold([f64::INFINITY, 0.0], |[least, most], z| [z.min(least), z.max(most)])
+    }
+
+    /// Cells outside next to the blocked ones.
+    fn ring(&self, blocked: &[bool]) -> impl Iterator<Item = usize> + use<> {
+        let steps = self.steps_outside(blocked);
+        (0..steps.len()).filter(move |c| (1..=MARGIN as u16).contains(&steps[*c]))
+    }
+
+    /// Cells next to the outline that have no reading, where going on outwards one comes to a reading behind
+    /// `nearest`: there the picture is not cut off, and the object is not hidden by something nearer.
+    fn gaps<'a>(
+        &'a self,
+        blocked: &[bool],
+        read: &'a [Option<Point>],
+        nearest: f64,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let size = [self.width as f64, self.height as f64];
+        let is_gap = move |c: &usize| {
+            let from = [(c % self.width) as f64 + 0.5, (c / self.width) as f64 + 0.5];
+            let away = [from[0] - 0.5 * size[0], from[1] - 0.5 * size[1]];
+            let length = away[0].hypot(away[1]).max(1e-9);
+            let met = (1..BORDER as usize).find_map(|k| {
+                let [u, v] = [0, 1].map(|i| from[i] + away[i] / length * k as f64);
+                let inside = u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
+                read[inside.then(|| v as usize * self.width + u as usize)?]
+            });
+            met.is_some_and(|p| (p - self.viewpoint).dot(&self.forward) > nearest)
+        };
+        self.ring(blocked).filter(|c| read[*c].is_none()).filter(is_gap)
+    }
+
     /// The point at `depth` along the viewing direction in the middle of a cell.
     fn point(&self, cell: usize, depth: f64) -> Point {
         let u = (cell % self.width) as f64 + 0.5;
@@ -170,6 +212,28 @@ impl Picture {
         let x = self.corner[0] + u * self.cell;
         let y = self.corner[1] + v * self.cell;
         self.viewpoint + (self.forward + self.right * x + self.down * y) * depth
+    }
+
+    /// How many cells each cell is away from the blocked ones on ways outside; 0 for these and for cells that
+    /// they enclose.
+    fn steps_outside(&self, blocked: &[bool]) -> Vec<u16> {
+        let outside = self.outside(blocked);
+        let mut steps = vec![0; blocked.len()];
+        let mut edge: Vec<usize> = (0..blocked.len()).filter(|c| blocked[*c]).collect();
+        for step in 1.. {
+            let mut next = Vec::new();
+            for c in edge.drain(..).flat_map(|c| self.neighbours(c)) {
+                if outside[c] && steps[c] == 0 {
+                    steps[c] = step;
+                    next.push(c);
+                }
+            }
+            if next.is_empty() {
+                break;
+            }
+            edge = next;
+        }
+        steps
     }
 
     /// The cells that are joined to the picture's border by cells that are not blocked.
@@ -183,15 +247,21 @@ impl Picture {
             if blocked[c] || std::mem::replace(&mut seen[c], true) {
                 continue;
             }
-            let (u, v) = (c % w, c / w);
-            open.extend([
-                if u > 0 { c - 1 } else { c },
-                if u + 1 < w { c + 1 } else { c },
-                if v > 0 { c - w } else { c },
-                if v + 1 < h { c + w } else { c },
-            ]);
+            open.extend(self.neighbours(c));
         }
         seen
+    }
+
+    /// The four cells beside a cell; at the picture's border the cell itself instead.
+    fn neighbours(&self, c: usize) -> [usize; 4] {
+        let (w, h) = (self.width, self.height);
+        let (u, v) = (c % w, c / w);
+        [
+            if u > 0 { c - 1 } else { c },
+            if u + 1 < w { c + 1 } else { c },
+            if v > 0 { c - w } else { c },
+            if v + 1 < h { c + w } else { c },
+        ]
     }
 
     /// The mask with `MARGIN` more cells on each side.

@@ -207,7 +207,7 @@ impl Normalised {
         let mut is_deep = |x: &Vector| distance::<false>(&h.parameters, x, &mut row) < deep;
         let within = self.points.iter().filter(|x| is_deep(x)).count();
         let mut intrusions = Vec::new();
-        self.terms.intrusions(&h.parameters, FINE_RAYS, &mut intrusions);
+        self.terms.deepest_on_rays(&h.parameters, FINE_RAYS, true, &mut intrusions);
         let through = intrusions.iter().filter(|x| is_deep(x)).count();
         within as f64 > HOLLOW * self.points.len() as f64 || through > 0
     }
@@ -269,11 +269,15 @@ fn ball(family: Family) -> Parameters {
     }
 }
 
-/// About `count` of the points, evenly spread over their order.
+/// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the
+/// same of each, as a step of the rows of a regular cloud would see only some of its columns.
 fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let n = points.len();
     let taken = n.min(count);
-    (0..taken).map(move |i| &points[i * n / taken])
+    let stretch = n as f64 / taken.max(1) as f64;
+    let at = move |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
+    (0..taken).map(move |i| &points[at(i).min(n - 1)])
 }
 
 /// Sides of the points' box along their principal axes.

@@ -166,6 +166,17 @@ impl Terms {
 
     /// The points at which free lines of sight lie deepest in the body, into `found`.
     pub(super) fn intrusions(&self, s: &Parameters, rays: usize, found: &mut Vec<Vector>) {
+        self.deepest_on_rays(s, rays, s.family == Family::Supertoroid, found);
+    }
+
+    /// The same; `own` says whether the lines of sight to the object's own points are looked at too.
+    pub(super) fn deepest_on_rays(
+        &self,
+        s: &Parameters,
+        rays: usize,
+        own: bool,
+        found: &mut Vec<Vector>,
+    ) {
         found.clear();
         let Some(viewpoint) = self.viewpoint else { return };
         let mut look = |ends: &[Vector]| {
@@ -174,7 +185,7 @@ impl Terms {
             found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
         };
         look(&self.free);
-        if s.family == Family::Supertoroid {
+        if own {
             look(&self.before);
         }
     }
@@ -183,8 +194,8 @@ impl Terms {
 /// Adds the depths of the intrusions; `rays` is how many lines of sight were looked at.
 fn add_intrusions(s: &Parameters, at: &Beside<'_>, to: &mut Normal) {
     let sigma = at.scale.max(0.02);
-    // a quarter of the points' say, however many rays there are
-    let weight = 0.25 * at.points as f64 / at.rays.max(1) as f64 / (sigma * sigma);
+    // an eighth of the points' say, however many rays there are
+    let weight = 0.12 * at.points as f64 / at.rays.max(1) as f64 / (sigma * sigma);
     for x in at.intrusions {
         let mut row = [0.0; COUNT];
         let d = distance::<true>(s, x, &mut row);
