@@ -8,14 +8,18 @@ mod gripper;
 mod hole;
 mod plan;
 mod quality;
+mod section;
 mod sight;
 mod suction;
 mod surroundings;
 mod sweep;
+mod tables;
 
 pub use gripper::{Boxed, Cup, Gripper, InvalidGripper, Jaw, Kind};
 pub use plan::{GraspOptions, plan};
+pub use section::{Section, Stationary};
 pub use surroundings::Surroundings;
+pub use tables::{Bands, CupRow, JawRow, Profile, cup_rows, jaw_rows};
 
 use crate::{Direction, Point, Pose};
 

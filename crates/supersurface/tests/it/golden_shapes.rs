@@ -12,7 +12,7 @@ pub(crate) fn golden(topic: &str) -> Value {
     serde_json::from_str::<Value>(&text).unwrap()["data"].take()
 }
 
-fn numbers<const N: usize>(v: &Value) -> Option<[f64; N]> {
+pub(crate) fn numbers<const N: usize>(v: &Value) -> Option<[f64; N]> {
     let list = v.as_array()?;
     let mut out = [0.0; N];
     for (o, x) in out.iter_mut().zip(list) {
