@@ -7,6 +7,7 @@ mod check;
 mod gripper;
 mod hole;
 mod plan;
+mod proposals;
 mod quality;
 mod section;
 mod sight;

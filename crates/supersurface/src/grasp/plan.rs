@@ -5,12 +5,15 @@ use nalgebra::Translation3;
 use super::check::{Obstruction, boxes, obstruction, tip_advance};
 use super::gripper::{Cup, Gripper, Jaw, Kind};
 use super::hole::holes;
+use super::proposals::proposals;
 use super::quality::{Candidate, Judged, judge};
 use super::suction::seals;
 use super::surroundings::{Local, Surroundings};
 use super::sweep::{narrowest, sweep};
 use super::{Grasp, Refusal};
 use crate::fit::Fit;
+use crate::shape::Posed;
+use crate::surface::Surface;
 use crate::{Direction, Point, Pose, Vector};
 
 /// How to plan.
@@ -45,9 +48,12 @@ pub fn plan(
 ) -> Result<Vec<Grasp>, Refusal> {
     let local =
         around.local(object, fit).filter(|l| l.spots.len() >= 12).ok_or(Refusal::NoPoints)?;
+    let trusted = fit.filter(|_| local.trusted);
+    let surface = trusted.map(|f| f.surface.moved(&around.frame.inverse()));
+    let surface = surface.as_ref();
     let mut found = match &gripper.kind {
-        Kind::Jaw(jaw) => by_jaw(&local, jaw, gripper, options)?,
-        Kind::Suction(cup) => by_suction(&local, cup, fit, gripper, options)?,
+        Kind::Jaw(jaw) => by_jaw(&local, surface, jaw, gripper, options)?,
+        Kind::Suction(cup) => by_suction(&local, surface, cup, gripper, options)?,
     };
     found.truncate(options.most);
     for grasp in &mut found {
@@ -70,11 +76,14 @@ struct Met {
 
 fn by_jaw(
     local: &Local,
+    surface: Option<&Posed<Surface>>,
     jaw: &Jaw,
     gripper: &Gripper,
     options: &GraspOptions,
 ) -> Result<Vec<Grasp>, Refusal> {
-    let mut candidates = sweep(local, jaw);
+    // rows first: of two equal grasps the one with a name is kept
+    let mut candidates = surface.map_or_else(Vec::new, |s| proposals(s, local, jaw));
+    candidates.extend(sweep(local, jaw));
     candidates.extend(holes(local, jaw));
     if candidates.is_empty() {
         return Err(match narrowest(local) {
@@ -146,16 +155,13 @@ fn jaw_grasp(candidate: &Candidate, judged: Judged, jaw: &Jaw) -> Grasp {
 
 fn by_suction(
     local: &Local,
+    surface: Option<&Posed<Surface>>,
     cup: &Cup,
-    fit: Option<&Fit>,
     gripper: &Gripper,
     options: &GraspOptions,
 ) -> Result<Vec<Grasp>, Refusal> {
-    let volume = match fit.filter(|_| local.trusted) {
-        Some(fit) => fit.surface.shape().volume(),
-        None => box_volume(local),
-    };
-    let (seals, miss) = seals(local, cup, volume);
+    let volume = surface.map_or_else(|| box_volume(local), |s| s.shape().volume());
+    let (seals, miss) = seals(local, surface, cup, volume);
     if seals.is_empty() {
         return Err(Refusal::NoSeal {
             radius: cup.lip_radius,

@@ -1,13 +1,20 @@
-//! Where a vacuum cup seals and what it can carry, on the seen points.
+//! Where a vacuum cup seals and what it can carry.
 //!
-//! The lip's ring must lie on matter all around, near a plane; the cup goes in along that plane's normal. What it
-//! carries is limited less by the pull than by the peel: the moment of the object's weight about the lip.
+//! Places are spread over what was seen, and the rows of the decision tables name some more. Where points are, they
+//! decide: the lip's ring must lie on matter all around, near a plane; the cup goes in along that plane's
+//! normal. On the hidden side of a trusted fit its closed form decides (the sag test of rows S and T), at a
+//! lower score. What a cup carries is limited less by the pull than by the peel: the moment of the object's
+//! weight about the lip.
 
-use nalgebra::{Matrix3, Rotation3, SymmetricEigen, UnitQuaternion};
+use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::gripper::Cup;
+use super::proposals::{cup_places, upright_tool};
 use super::surroundings::Local;
+use super::tables::CupRow;
 use crate::cloud::VoxelGrid;
+use crate::shape::Posed;
+use crate::surface::Surface;
 use crate::{Direction, Point, Pose, Vector};
 
 /// Sectors of the lip's ring that must all hold matter.
@@ -16,6 +23,8 @@ const SECTORS: usize = 12;
 const DENSITY: f64 = 600.0;
 /// Weight times this covers shaking.
 const SHAKING: f64 = 1.6;
+/// Worth of a place that only the fit shows.
+const HIDDEN: f64 = 0.5;
 /// Places that are tried.
 const TRIED: usize = 350;
 
@@ -36,8 +45,14 @@ pub(super) struct NearMiss {
     pub(super) gap: f64,
 }
 
-/// Places where the cup seals, best first, and the nearest miss. `volume` is the object's, in m³.
-pub(super) fn seals(local: &Local, cup: &Cup, volume: f64) -> (Vec<Seal>, NearMiss) {
+/// Places where the cup seals, best first, and the nearest miss. `volume` is the object's, in m³; `surface` a
+/// trusted fit in the frame of the table.
+pub(super) fn seals(
+    local: &Local,
+    surface: Option<&Posed<Surface>>,
+    cup: &Cup,
+    volume: f64,
+) -> (Vec<Seal>, NearMiss) {
     let seen: Vec<usize> = (0..local.spots.len()).filter(|i| local.spots[*i].seen).collect();
     let places: Vec<Point> = seen.iter().map(|i| local.spots[*i].at).collect();
     let mut miss = NearMiss { gap: f64::INFINITY };
@@ -48,28 +63,60 @@ pub(super) fn seals(local: &Local, cup: &Cup, volume: f64) -> (Vec<Seal>, NearMi
     let mut out = Vec::new();
     let stride = seen.len().div_ceil(TRIED).max(1);
     let mut near: Vec<Vector> = Vec::new();
+    let look = |at: &Point, near: &mut Vec<Vector>| {
+        near.clear();
+        grid.within(at, radius, |i, _| near.push(places[i as usize] - at));
+    };
+    // rows first: of two equal places the one with a name is kept
+    for (row, pose) in surface.map(cup_places).unwrap_or_default() {
+        let at = Point::from(pose.translation.vector);
+        let outward = pose.rotation * -Vector::z();
+        if local.has_table && outward.z < -0.2 {
+            continue;
+        }
+        look(&at, &mut near);
+        out.extend(if near.is_empty() {
+            modelled(local, cup, volume, &row, &pose)
+        } else {
+            seal(local, cup, volume, (&at, &outward), &near, row.table, &mut miss)
+        });
+    }
     for k in (0..seen.len()).step_by(stride) {
         let spot = local.spots[seen[k]];
         if spot.normal == Vector::zeros() || (local.has_table && spot.normal.z < -0.2) {
             continue;
         }
-        near.clear();
-        grid.within(&spot.at, radius, |i, _| near.push(places[i as usize] - spot.at));
-        if let Some(seal) = seal(local, cup, volume, &spot.at, &spot.normal, &near, &mut miss) {
-            out.push(seal);
-        }
+        look(&spot.at, &mut near);
+        let place = (&spot.at, &spot.normal);
+        out.extend(seal(local, cup, volume, place, &near, "flat spot", &mut miss));
     }
     out.sort_by(|a, b| b.score.total_cmp(&a.score));
     (out, miss)
+}
+
+/// A row on the hidden side, where the closed form has the say.
+fn modelled(local: &Local, cup: &Cup, volume: f64, row: &CupRow, pose: &Pose) -> Option<Seal> {
+    let lip = Point::from(pose.translation.vector);
+    let sag = row.sag(cup.lip_radius);
+    let sharpest = row.sections.iter().map(|s| s.curvature().unwrap_or(f64::INFINITY));
+    if sag > cup.lip_tolerance || sharpest.fold(0.0, f64::max) * cup.min_curvature_radius > 1.0 {
+        return None;
+    }
+    let normal = pose.rotation * -Vector::z();
+    let closed = (1.0 - sag / cup.lip_tolerance).clamp(0.0, 1.0);
+    let mut seal = carried(local, cup, volume, &lip, &normal, closed, row.table);
+    seal.terms.push(("seen", 0.0));
+    seal.score *= HIDDEN;
+    Some(seal)
 }
 
 fn seal(
     local: &Local,
     cup: &Cup,
     volume: f64,
-    at: &Point,
-    outward: &Vector,
+    (at, outward): (&Point, &Vector),
     near: &[Vector],
+    source: &'static str,
     miss: &mut NearMiss,
 ) -> Option<Seal> {
     if near.len() < 16 {
@@ -114,8 +161,22 @@ fn seal(
         return None;
     }
     let lip = at + normal * mean.dot(&normal);
+    let closed = (1.0 - gap / cup.lip_tolerance).clamp(0.0, 1.0);
+    Some(carried(local, cup, volume, &lip, &normal, closed, source))
+}
+
+/// What a cup that closes at a place can carry. `closed` says how well its lip lies there, in [0, 1].
+fn carried(
+    local: &Local,
+    cup: &Cup,
+    volume: f64,
+    lip: &Point,
+    normal: &Vector,
+    closed: f64,
+    source: &'static str,
+) -> Seal {
     let arm = local.centre - lip;
-    let across = arm - normal * arm.dot(&normal);
+    let across = arm - normal * arm.dot(normal);
     let lever = across.norm();
     let tilted = normal.xy().norm();
     // hanging under the cup the moment is that of the lever; held from the side the whole arm counts
@@ -126,21 +187,18 @@ fn seal(
     let shear = cup.mu * (pull - weight * normal.z.max(0.0)).max(0.0);
     let load = (weight * moment_arm / peel.max(1e-9)).max(weight * tilted / shear.max(1e-9));
     let terms = vec![
-        ("seal", (1.0 - gap / cup.lip_tolerance).clamp(0.0, 1.0)),
+        ("seal", closed),
         ("lever", 1.0 / (1.0 + (lever / 0.02) * (lever / 0.02))),
         ("load", (1.5 - load).clamp(0.0, 1.0)),
         ("approach", 0.5 * (1.0 + normal.z)),
     ];
     let [seal, lever_term, load_term, approach] = [terms[0].1, terms[1].1, terms[2].1, terms[3].1];
     let score = (0.3 + 0.7 * load_term) * (0.45 * seal + 0.4 * lever_term + 0.15 * approach);
-    let x = u;
-    let axes = Matrix3::from_columns(&[x, (-normal).cross(&x), -normal]);
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
-    Some(Seal {
-        pose: Pose::from_parts(lip.coords.into(), turn),
+    Seal {
+        pose: Pose::from_parts(lip.coords.into(), upright_tool(&-normal)),
         score,
         terms,
-        contact: (lip, Direction::new_unchecked(normal)),
-        source: "flat spot",
-    })
+        contact: (*lip, Direction::new_unchecked(*normal)),
+        source,
+    }
 }
