@@ -22,11 +22,16 @@ pub(super) enum Obstruction {
     Neighbour,
 }
 
-/// Boxes of a gripper at an opening, in the tool frame. For a jaw `gap` is the distance between the pads.
-pub(super) fn boxes(gripper: &Gripper, gap: f64) -> Vec<Boxed> {
+/// Boxes of a gripper in the tool frame. For a jaw `gap` is the distance between the pads now; `closed` that at
+/// which they stand in the tool frame's origin.
+pub(super) fn boxes(gripper: &Gripper, gap: f64, closed: f64) -> Vec<Boxed> {
     let mut out = gripper.body.clone();
     if let Kind::Jaw(jaw) = &gripper.kind {
-        let advance = tip_advance(&jaw.tip_arc, gap);
+        let back = tip_advance(&jaw.tip_arc, closed);
+        let advance = tip_advance(&jaw.tip_arc, gap) - back;
+        for part in &mut out {
+            part.center.z -= back;
+        }
         for side in [1.0, -1.0] {
             for part in &jaw.finger {
                 let mut moved = *part;
@@ -40,7 +45,7 @@ pub(super) fn boxes(gripper: &Gripper, gap: f64) -> Vec<Boxed> {
 }
 
 /// How far the tips of a linkage stand out at an opening, against the closed jaw.
-pub(super) fn tip_advance(arc: &[[f64; 2]], opening: f64) -> f64 {
+fn tip_advance(arc: &[[f64; 2]], opening: f64) -> f64 {
     let (Some(first), Some(last)) = (arc.first(), arc.last()) else { return 0.0 };
     if opening <= first[0] {
         return first[1];
@@ -54,9 +59,14 @@ pub(super) fn tip_advance(arc: &[[f64; 2]], opening: f64) -> f64 {
     last[1]
 }
 
+/// True when a box comes too near to the table.
+pub(super) fn meets_table(boxes: &[Boxed], pose: &Pose, local: &Local) -> bool {
+    local.has_table && boxes.iter().any(|b| lowest(b, pose) < TABLE_MARGIN)
+}
+
 /// The first obstruction of a gripper with these boxes at a pose in the table's frame.
 pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option<Obstruction> {
-    if local.has_table && boxes.iter().any(|b| lowest(b, pose) < TABLE_MARGIN) {
+    if meets_table(boxes, pose, local) {
         return Some(Obstruction::Table);
     }
     let inverse = pose.inverse();

@@ -28,7 +28,8 @@ use crate::{Direction, Point, Pose};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Grasp {
-    /// Pose of the tool frame in the frame of the cloud.
+    /// Pose of the tool frame in the frame of the cloud: the pads (or the lip) stand in its origin once the
+    /// jaw has closed to `contact_width`. The tips of a linkage move on an arc and are behind it before.
     pub pose: Pose,
     /// Jaw opening while approaching, in metres (inside grasps: over the outer faces; suction: 0).
     pub opening: f64,

@@ -1,8 +1,6 @@
 //! From candidates to ranked grasps: propose, judge, check, and keep what is diverse.
 
-use nalgebra::Translation3;
-
-use super::check::{Obstruction, boxes, obstruction, tip_advance};
+use super::check::{Obstruction, boxes, meets_table, obstruction};
 use super::gripper::{Cup, Gripper, Jaw, Kind};
 use super::hole::holes;
 use super::proposals::proposals;
@@ -31,6 +29,8 @@ impl Default for GraspOptions {
     }
 }
 
+/// How much narrower than expected an object may turn out, in metres.
+const NARROWER: f64 = 0.006;
 /// Two grasps nearer than this are one: metres and radians.
 const SAME_PLACE: f64 = 0.010;
 const SAME_TURN: f64 = 0.26;
@@ -57,7 +57,7 @@ pub fn plan(
     };
     found.truncate(options.most);
     for grasp in &mut found {
-        grasp.pose = around.frame * grasp.pose;
+        grasp.pose = canonical(&(around.frame * grasp.pose));
         for (point, normal) in &mut grasp.contacts {
             *point = around.frame * *point;
             *normal = Direction::new_unchecked(around.frame * normal.into_inner());
@@ -118,7 +118,12 @@ fn by_jaw(
             continue;
         }
         let gap = if candidate.inside { 0.0 } else { grasp.opening };
-        match obstruction(&boxes(gripper, gap), &grasp.pose, local) {
+        // the tips of a linkage come out as it closes, and an object may be narrower than it seems
+        let width = if candidate.inside { 0.0 } else { candidate.width };
+        let closed = boxes(gripper, (width - NARROWER).max(0.0), width);
+        let met_table = !candidate.inside && meets_table(&closed, &grasp.pose, local);
+        let open = obstruction(&boxes(gripper, gap, width), &grasp.pose, local);
+        match open.or(met_table.then_some(Obstruction::Table)) {
             None => out.push(grasp),
             Some(Obstruction::Table) => met.table += 1,
             Some(Obstruction::Object) => met.object += 1,
@@ -138,11 +143,8 @@ fn jaw_grasp(candidate: &Candidate, judged: Judged, jaw: &Jaw) -> Grasp {
     } else {
         (candidate.width + 2.0 * jaw.clearance + 0.004).min(jaw.max_opening)
     };
-    // the tool frame of a linkage is where the pads are when closed
-    let advance = if candidate.inside { 0.0 } else { tip_advance(&jaw.tip_arc, candidate.width) };
-    let pose = candidate.pose * Translation3::from(-Vector::z() * advance);
     Grasp {
-        pose,
+        pose: candidate.pose,
         opening,
         contact_width: candidate.width,
         inside: candidate.inside,
@@ -169,7 +171,7 @@ fn by_suction(
             tolerance: cup.lip_tolerance,
         });
     }
-    let parts = boxes(gripper, 0.0);
+    let parts = boxes(gripper, 0.0, 0.0);
     let mut met = Met::default();
     let mut out: Vec<Grasp> = Vec::new();
     for seal in seals.into_iter().filter(|s| s.score >= options.least_score) {
@@ -211,6 +213,13 @@ fn box_volume(local: &Local) -> f64 {
         let size = high - low;
         2.0 / 3.0 * size.x * size.y * (local.heights[1] - local.heights[0]).max(size.z)
     })
+}
+
+/// Of the two quaternions of a rotation the one whose scalar part is not negative.
+fn canonical(pose: &Pose) -> Pose {
+    let q = pose.rotation.into_inner();
+    let q = if q.w < 0.0 { -q } else { q };
+    Pose::from_parts(pose.translation, nalgebra::UnitQuaternion::new_unchecked(q))
 }
 
 /// The same grasp, also when turned by half a turn about its approach.
