@@ -7,7 +7,7 @@ use supersurface::fit::Family;
 
 /// Recovers the objects of a depth camera's cloud as superellipsoids and supertoroids, and plans grasps.
 ///
-/// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 no table or nothing found, 5 output failed.
+/// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 no table or nothing on it, 5 output failed.
 #[derive(Debug, Parser)]
 #[command(name = "supersurface", version, max_term_width = 100)]
 pub(crate) struct Cli {

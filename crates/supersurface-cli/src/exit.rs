@@ -30,6 +30,11 @@ impl Failure {
         Self { status: 5, message: message.to_string() }
     }
 
+    /// What went wrong, in words.
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
     /// Says what went wrong on standard error.
     #[allow(clippy::print_stderr)]
     pub(crate) fn report(&self) -> ExitCode {

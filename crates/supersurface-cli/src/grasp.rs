@@ -4,12 +4,10 @@ use crate::args::GraspArgs;
 use crate::exit::Failure;
 use crate::input;
 use crate::outputs::Run;
-use crate::progress::Progress;
 
 /// Reads the cloud and runs the pipeline on it.
 pub(crate) fn run(args: &GraspArgs) -> Result<(), Failure> {
-    let mut progress = Progress::new(args.output.quiet);
-    progress.begin("read", format!("reading {}", args.input.display()));
-    let source = input::read(args)?;
-    Run { source, how: &args.how, output: &args.output }.run(progress)
+    let name = supersurface_io::shown_name(&args.input);
+    let stage = ("read", format!("reading {name}"));
+    Run { how: &args.how, output: &args.output, name: &name }.run(stage, || input::read(args))
 }

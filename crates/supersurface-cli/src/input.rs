@@ -15,7 +15,7 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     let options = ReadOptions { instances: args.instances.clone(), camera: camera(args)? };
     let Read { mut cloud, mut warnings, .. } =
         supersurface_io::read(&args.input, &options).map_err(Failure::input)?;
-    let name = args.input.display().to_string();
+    let name = supersurface_io::shown_name(&args.input);
     if let Some(mask) = &args.mask {
         cloud.labels = read_mask(mask, cloud.grid).map_err(Failure::input)?;
     }
@@ -42,7 +42,7 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
         Objects::Find
     };
     check(&name, &cloud)?;
-    Ok(Source { name, cloud, frame, warnings, objects })
+    Ok(Source { cloud, frame, warnings, objects })
 }
 
 fn check(name: &str, cloud: &PointCloud) -> Result<(), Failure> {

@@ -4,7 +4,7 @@ use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
 use supersurface::grasp::Gripper;
 use supersurface::pipeline::{self, Objects, Options, Report};
-use supersurface::segment::SegmentError;
+use supersurface::segment::{SegmentError, Segmentation};
 use supersurface_io::{ReportHead, failure_json, report_json};
 
 use crate::args::{HowArgs, OutputArgs};
@@ -14,7 +14,6 @@ use crate::{show, terminal};
 
 /// A cloud with what is known about it.
 pub(crate) struct Source {
-    pub(crate) name: String,
     pub(crate) cloud: PointCloud,
     /// `cloud` or `robot`.
     pub(crate) frame: &'static str,
@@ -22,60 +21,86 @@ pub(crate) struct Source {
     pub(crate) objects: Objects,
 }
 
-/// One run.
+/// One run: how it is done and where its results go.
 pub(crate) struct Run<'a> {
-    pub(crate) source: Source,
     pub(crate) how: &'a HowArgs,
     pub(crate) output: &'a OutputArgs,
+    /// Name of the input, for the report.
+    pub(crate) name: &'a str,
 }
 
 impl Run<'_> {
-    /// Runs the pipeline and writes what was asked for. Files come before standard output, so that a broken
-    /// pipe costs none of them.
-    pub(crate) fn run(&self, mut progress: Progress) -> Result<(), Failure> {
-        for warning in &self.source.warnings {
-            progress.warn(warning);
-        }
+    /// Gets the cloud from `source`, runs the pipeline and writes what was asked for. A wrong gripper shows
+    /// before anything is read; files come before standard output, so that a broken pipe costs none of them.
+    pub(crate) fn run(
+        &self,
+        stage: (&'static str, String),
+        source: impl FnOnce() -> Result<Source, Failure>,
+    ) -> Result<(), Failure> {
         let gripper = supersurface_io::read_gripper(&self.how.gripper).map_err(Failure::input)?;
         threads(self.how.threads)?;
+        let mut progress = Progress::new(self.output.quiet);
+        progress.begin(stage.0, stage.1);
+        let source = match source() {
+            Ok(source) => source,
+            Err(failure) => {
+                let times = progress.finish();
+                self.leave_nothing(failure.message(), None, &gripper, times)?;
+                return Err(failure);
+            }
+        };
+        for warning in &source.warnings {
+            progress.warn(warning);
+        }
         let options = Options {
-            objects: self.source.objects,
+            objects: source.objects,
             fit: FitOptions { family: self.how.model.family() },
             ..Options::default()
         };
-        let cloud = &self.source.cloud;
-        let result = pipeline::run(cloud, &gripper, &options, &mut |stage| progress.stage(stage));
-        match result {
-            Ok(report) => self.succeed(&report, &gripper, progress),
-            Err(error) => self.fail(&error, &gripper, &mut progress),
+        let told = &mut |stage| progress.stage(stage);
+        match pipeline::run(&source.cloud, &gripper, &options, told) {
+            Ok(report) => self.succeed(&source, &report, &gripper, progress),
+            Err(error) => {
+                let mend = match error {
+                    SegmentError::NoSupport { .. } => {
+                        "; if the cloud is one object, pass --segmented"
+                    }
+                    _ => "",
+                };
+                let message = format!("{}: {error}{mend}", self.name);
+                self.leave_nothing(&message, Some(&source), &gripper, progress.finish())?;
+                Err(Failure::nothing(message))
+            }
         }
     }
 
     fn head<'b>(
         &'b self,
+        source: Option<&'b Source>,
         gripper: &'b Gripper,
         timing: &'b [(&'static str, f64)],
     ) -> ReportHead<'b> {
         ReportHead {
-            source: &self.source.name,
-            frame: self.source.frame,
-            world: self.source.cloud.world.as_ref(),
+            source: self.name,
+            frame: source.map_or("cloud", |s| s.frame),
+            cloud: source.map(|s| &s.cloud),
             gripper,
             most_grasps: self.output.top,
             timing,
-            warnings: &self.source.warnings,
+            warnings: source.map_or(&[], |s| &s.warnings),
         }
     }
 
     fn succeed(
         &self,
+        source: &Source,
         report: &Report,
         gripper: &Gripper,
         mut progress: Progress,
     ) -> Result<(), Failure> {
-        let cloud = &self.source.cloud;
+        let cloud = &source.cloud;
         if let Some(path) = &self.output.labels {
-            let labels = report.segmentation.labels(cloud.points.len());
+            let labels = report.segmentation.labels(&cloud.points);
             supersurface_io::write_labels(path, &labels).map_err(Failure::output)?;
         }
         if let Some(path) = &self.output.png {
@@ -88,40 +113,42 @@ impl Run<'_> {
         if let Some(path) = &self.output.grasps {
             let planning = times.iter().filter(|(name, _)| *name != "draw" && *name != "look");
             let seconds = planning.map(|(_, s)| s).sum();
-            supersurface_io::write_grasps(path, report, gripper, seconds)
+            supersurface_io::write_grasps(path, &report.objects, gripper, seconds)
                 .map_err(Failure::output)?;
         }
         let text = if self.output.json {
-            report_json(report, &self.head(gripper, times)) + "\n"
+            report_json(report, &self.head(Some(source), gripper, times)) + "\n"
         } else {
             terminal::table(report, self.output.top)
         };
         print(&text)?;
         if report.objects.is_empty() {
-            return Err(Failure::nothing("nothing stands on the table"));
+            return Err(Failure::nothing(format!("{}: nothing stands on the table", self.name)));
         }
         Ok(())
     }
 
-    fn fail(
+    /// What a run without results leaves: labels and grasps of nothing, and a report that says why.
+    fn leave_nothing(
         &self,
-        error: &SegmentError,
+        message: &str,
+        source: Option<&Source>,
         gripper: &Gripper,
-        progress: &mut Progress,
+        times: &[(&'static str, f64)],
     ) -> Result<(), Failure> {
-        let message = format!("{}: {error}", self.source.name);
-        let times = progress.finish();
         if let Some(path) = &self.output.labels {
-            let none = vec![0; self.source.cloud.points.len()];
-            supersurface_io::write_labels(path, &none).map_err(Failure::output)?;
+            let points = source.map_or(&[][..], |s| &s.cloud.points);
+            let labels = Segmentation::default().labels(points);
+            supersurface_io::write_labels(path, &labels).map_err(Failure::output)?;
+        }
+        if let Some(path) = &self.output.grasps {
+            supersurface_io::write_grasps(path, &[], gripper, times.iter().map(|t| t.1).sum())
+                .map_err(Failure::output)?;
         }
         if self.output.json {
-            print(&(failure_json(&message, &self.head(gripper, times)) + "\n"))?;
+            print(&(failure_json(message, &self.head(source, gripper, times)) + "\n"))?;
         }
-        Err(match error {
-            SegmentError::NoSupport { .. } => Failure::nothing(message),
-            _ => Failure::input(message),
-        })
+        Ok(())
     }
 }
 

@@ -28,7 +28,7 @@ const INK: Colour = [28, 30, 34];
 
 /// Draws cloud, surfaces and the best grasp of each object.
 pub(crate) fn picture(cloud: &PointCloud, report: &Report, gripper: &Gripper) -> Image {
-    let labels = report.segmentation.labels(cloud.points.len());
+    let labels = report.segmentation.labels(&cloud.points);
     let shown = interest(cloud, report);
     let up = up(cloud, report, &shown);
     let from = viewpoint(cloud, &shown, &up);

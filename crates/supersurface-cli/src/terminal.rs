@@ -33,10 +33,8 @@ fn support(out: &mut String, s: &Segmentation) {
         let n = plane.normal();
         let _ = writeln!(
             out,
-            "table: normal {:.3} {:.3} {:.3}, offset {:.3} m, scatter {:.1} mm",
-            n.x,
-            n.y,
-            n.z,
+            "table: normal {}, offset {:.3} m, scatter {:.1} mm",
+            numbers(&[n.x, n.y, n.z]),
             plane.offset(),
             1e3 * s.support_noise
         );
@@ -67,7 +65,7 @@ fn row(out: &mut String, id: usize, object: &Object) {
         shape.name(),
         format!("{x:.0} x {y:.0} x {z:.0}"),
         exponents,
-        format!("{:.3} {:.3} {:.3}", c.x, c.y, c.z),
+        numbers(c.as_slice()),
         1e3 * fit.residual,
         1e2 * fit.inlier_share(),
     );
@@ -101,13 +99,24 @@ fn grasp(out: &mut String, rank: usize, g: &Grasp) {
     };
     let _ = writeln!(
         out,
-        "       {rank}. score {:.2}  {:<22}  at {:.3} {:.3} {:.3}  wxyz {:.3} {:.3} {:.3} {:.3}  ({})",
-        g.score, width, t.x, t.y, t.z, q.w, q.i, q.j, q.k, g.source
+        "       {rank}. score {:.2}  {:<22}  at {:<20}  wxyz {:<27}  {}",
+        g.score,
+        width,
+        numbers(t.as_slice()),
+        numbers(&[q.w, q.i, q.j, q.k]),
+        g.source
     );
     if rank == 1 {
         let terms: Vec<String> = g.terms.iter().map(|(n, v)| format!("{n} {v:.2}")).collect();
         let _ = writeln!(out, "          {}", terms.join("  "));
     }
+}
+
+/// Three decimals each, zero without a sign.
+fn numbers(values: &[f64]) -> String {
+    let shown: Vec<String> =
+        values.iter().map(|v| format!("{:.3}", (v * 1e3).round() / 1e3 + 0.0)).collect();
+    shown.join(" ")
 }
 
 fn dropped(out: &mut String, s: &Segmentation) {

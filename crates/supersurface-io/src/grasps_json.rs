@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use supersurface::grasp::{Grasp, Gripper, Kind};
-use supersurface::pipeline::Report;
+use supersurface::pipeline::Object;
 
 use crate::error::WriteError;
 use crate::write::write_bytes;
@@ -46,10 +46,11 @@ struct Refused {
     reason: String,
 }
 
-/// Writes the grasps of all objects. `seconds` is what reading, segmenting, fitting and planning took.
+/// Writes the grasps of all objects; a file with none of them where there are no objects. `seconds` is what
+/// reading, segmenting, fitting and planning took.
 pub fn write_grasps(
     file: &Path,
-    report: &Report,
+    objects: &[Object],
     gripper: &Gripper,
     seconds: f64,
 ) -> Result<(), WriteError> {
@@ -58,7 +59,7 @@ pub fn write_grasps(
         Kind::Suction(_) => "suction",
     };
     let (mut grasps, mut refusals) = (Vec::new(), Vec::new());
-    for (object, id) in report.objects.iter().zip(1..) {
+    for (object, id) in objects.iter().zip(1..) {
         match &object.grasps {
             Ok(found) => grasps.extend(found.iter().map(|g| row(g, id, kind))),
             Err(refusal) => refusals.push(Refused { object_id: id, reason: refusal.to_string() }),

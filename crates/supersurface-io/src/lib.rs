@@ -40,6 +40,6 @@ pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;
 pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
 pub use npy::write_labels;
-pub use read::{Read, ReadOptions, parse, read};
+pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
 pub use write::write_png;

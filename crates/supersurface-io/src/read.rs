@@ -38,12 +38,17 @@ pub struct Read {
 /// The viewpoint of the cloud is the origin of its frame, where the sensor of such files stands.
 pub fn read(file: &Path, options: &ReadOptions) -> Result<Read, ReadError> {
     let bytes = load(file)?;
-    parse(&file.display().to_string(), &bytes, options)
+    parse(&shown_name(file), &bytes, options)
+}
+
+/// An input's name as it stands in messages and reports: `-` is "standard input".
+pub fn shown_name(file: &Path) -> String {
+    if file == Path::new("-") { "standard input".to_owned() } else { file.display().to_string() }
 }
 
 /// The bytes of a file or of standard input.
 pub(crate) fn load(file: &Path) -> Result<Vec<u8>, ReadError> {
-    let name = || file.display().to_string();
+    let name = || shown_name(file);
     let io = |source| ReadError::io(file, source);
     let mut bytes = Vec::new();
     let read = if file == Path::new("-") {

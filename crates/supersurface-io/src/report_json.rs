@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 use supersurface::Pose;
+use supersurface::cloud::PointCloud;
 use supersurface::grasp::{Grasp, Gripper, Kind};
 use supersurface::pipeline::{Object, Report};
 use supersurface::segment::Segmentation;
@@ -16,8 +17,8 @@ pub struct ReportHead<'a> {
     pub source: &'a str,
     /// `cloud`, or `robot` when the camera's pose was given.
     pub frame: &'a str,
-    /// Pose of that frame in the world, where the file carries one.
-    pub world: Option<&'a Pose>,
+    /// What was read, in that frame; `None` where nothing could be.
+    pub cloud: Option<&'a PointCloud>,
     /// The gripper for which grasps were planned.
     pub gripper: &'a Gripper,
     /// Most grasps an object that are written.
@@ -32,11 +33,17 @@ pub struct ReportHead<'a> {
 pub fn report_json(report: &Report, head: &ReportHead<'_>) -> String {
     let objects = report.objects.iter().zip(&report.segmentation.objects).enumerate();
     let objects = objects.map(|(i, (o, points))| object(i + 1, o, points.len(), head)).collect();
-    let file = File { plane: plane(&report.segmentation), objects, ..File::head(head) };
-    text(&File { dropped: dropped(&report.segmentation), ..file })
+    let message = report.objects.is_empty().then(|| "nothing stands on the table".to_owned());
+    text(&File {
+        message,
+        plane: plane(&report.segmentation),
+        objects,
+        dropped: dropped(&report.segmentation),
+        ..File::head(head)
+    })
 }
 
-/// The JSON text of a run that found no support or no usable points: `plane` is null and `message` says why.
+/// The JSON text of a run that read no cloud or found no support or usable points: `plane` is null and `message` says why.
 pub fn failure_json(message: &str, head: &ReportHead<'_>) -> String {
     text(&File { message: Some(message.to_owned()), ..File::head(head) })
 }
@@ -53,6 +60,7 @@ struct File<'a> {
     units: Units,
     source: &'a str,
     frame: Frame<'a>,
+    cloud: Option<CloudRow>,
     message: Option<String>,
     plane: Option<PlaneRow>,
     gripper: &'a str,
@@ -69,7 +77,11 @@ impl<'a> File<'a> {
             version: 1,
             units: Units { length: "m", angle: "rad", quaternion: "wxyz" },
             source: head.source,
-            frame: Frame { id: head.frame, world_pose: head.world.map(PoseRow::new) },
+            frame: Frame {
+                id: head.frame,
+                world_pose: head.cloud.and_then(|c| c.world.as_ref()).map(PoseRow::new),
+            },
+            cloud: head.cloud.map(CloudRow::new),
             message: None,
             plane: None,
             gripper: &head.gripper.name,
@@ -93,6 +105,19 @@ struct Frame<'a> {
     id: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     world_pose: Option<PoseRow>,
+}
+
+#[derive(Serialize)]
+struct CloudRow {
+    points: usize,
+    finite: usize,
+    grid: Option<[usize; 2]>,
+}
+
+impl CloudRow {
+    fn new(cloud: &PointCloud) -> Self {
+        Self { points: cloud.points.len(), finite: cloud.finite_count(), grid: cloud.grid }
+    }
 }
 
 #[derive(Serialize)]

@@ -245,8 +245,40 @@ fn support_point(s: &Parameters, direction: &Vector) -> Vector {
 }
 
 /// The point between `from` and `to` that lies deepest in the body (least signed distance), if any is
-/// inside. Found by sampling the stretch inside the body's bounding ellipsoid.
+/// inside. Along a line the distance to a superellipsoid has one valley, and the sign of its slope halves the
+/// way to it; a toroid may have two, so samples choose the deeper one first.
 fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
+    const SAMPLES: usize = 6;
+    const HALVINGS: usize = 8;
+    let (mut low, mut high) = near(s, from, to)?;
+    let way = to - from;
+    let at = |t: f64| from + way * t;
+    let mut row = [0.0; COUNT];
+    let mut halvings = HALVINGS;
+    if s.family == Family::Supertoroid {
+        let step = (high - low) / SAMPLES as f64;
+        let samples = (0..=SAMPLES).map(|i| low + step * i as f64);
+        let depth = samples.map(|t| (distance::<false>(s, &at(t), &mut row), t));
+        let best = depth.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+        (low, high) = ((best - step).max(low), (best + step).min(high));
+        halvings -= 2;
+    }
+    let (mut best, mut least) = (low, f64::INFINITY);
+    for _ in 0..halvings {
+        let t = 0.5 * (low + high);
+        let d = distance::<true>(s, &at(t), &mut row);
+        if d < least {
+            (best, least) = (t, d);
+        }
+        // moving the body along its normal lowers the distance: the row of the position is -n
+        let slope = -(row[6] * way.x + row[7] * way.y + row[8] * way.z);
+        if slope > 0.0 { high = t } else { low = t }
+    }
+    (least < 0.0).then(|| at(best))
+}
+
+/// The stretch between `from` and `to`, as shares, that runs through the body's bounding ellipsoid.
+fn near(s: &Parameters, from: &Vector, to: &Vector) -> Option<(f64, f64)> {
     let half = Vector::from(s.half_extents());
     let local = |x: &Vector| s.rotation.inverse_transform_vector(&(x - s.position));
     let a = local(from).component_div(&half);
@@ -263,33 +295,7 @@ fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
     }
     let reach = ((3.0 - nearest) / squared).sqrt();
     let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
-    if low >= high {
-        return None;
-    }
-    let at = |t: f64| from + (to - from) * t;
-    let mut unused = [0.0; COUNT];
-    let mut value = |t: f64| distance::<false>(s, &at(t), &mut unused);
-    const SAMPLES: usize = 6;
-    let step = (high - low) / SAMPLES as f64;
-    let (mut best, mut least) = (low, f64::INFINITY);
-    for i in 0..=SAMPLES {
-        let t = low + step * i as f64;
-        let d = value(t);
-        if d < least {
-            (best, least) = (t, d);
-        }
-    }
-    let mut width = 0.5 * step;
-    for _ in 0..2 {
-        for t in [best - width, best + width] {
-            let d = value(t.clamp(low, high));
-            if d < least {
-                (best, least) = (t.clamp(low, high), d);
-            }
-        }
-        width *= 0.5;
-    }
-    (least < 0.0).then(|| at(best))
+    (low < high).then_some((low, high))
 }
 
 /// `½ Σ (ln h_i - mean)² / σ²` over the three half extents.

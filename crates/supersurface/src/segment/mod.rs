@@ -48,9 +48,10 @@ pub struct Segmentation {
 
 impl Segmentation {
     /// What each of a cloud's points is: k for object number k (from 1), -1 for a piece that was
-    /// dropped, 0 for the rest, support and background. `n` is the number of points.
-    pub fn labels(&self, n: usize) -> Vec<i32> {
-        let mut labels = vec![0; n];
+    /// dropped and for points that are not finite, 0 for the rest, support and background.
+    pub fn labels(&self, points: &[Point]) -> Vec<i32> {
+        let valid = |p: &Point| p.coords.iter().all(|v| v.is_finite());
+        let mut labels: Vec<i32> = points.iter().map(|p| if valid(p) { 0 } else { -1 }).collect();
         let mut mark = |points: &[u32], label: i32| {
             for i in points {
                 if let Some(l) = labels.get_mut(*i as usize) {

@@ -111,7 +111,7 @@ fn scene(pitch: f64) -> (Plane, Vec<Thing>) {
 /// Every thing but the first is found as one object, and nothing else.
 fn check(cloud: &PointCloud, truth: &[Option<usize>], things: usize) {
     let found = segment(cloud, &SegmentOptions::default()).unwrap();
-    let labels = found.labels(cloud.points.len());
+    let labels = found.labels(&cloud.points);
     assert_eq!(found.objects.len(), things - 1);
     for k in 1..things {
         let best = (1..things as i32).map(|l| {

@@ -1,0 +1,71 @@
+//! The exit status and what standard error says with it.
+
+use std::process::Stdio;
+
+use crate::{command, run, run_on, scratch, text};
+
+#[test]
+fn wrong_use_is_2() {
+    run(&[]).ended(2);
+    run(&["grasp"]).ended(2);
+    run(&["demo", "--threads", "0"]).ended(2);
+    run(&["grasp", "x.png", "--intrinsics", "500,500,320", "--depth-scale", "1000"]).ended(2);
+    run(&["grasp", "x.pcd", "--camera-pose", "0,0,0,2,0,0,0"]).ended(3);
+    let file = scratch("pose.xyz");
+    std::fs::write(&file, "0 0 1\n1 0 1\n").unwrap();
+    let ran = run(&["grasp", text(&file), "--camera-pose", "0,0,0,2,0,0,0"]).ended(2);
+    assert!(ran.stderr.contains("quaternion"), "{}", ran.stderr);
+    let ran = run(&["grasp", text(&file), "--viewpoint", "0,0"]).ended(2);
+    assert!(ran.stderr.contains("--viewpoint"), "{}", ran.stderr);
+}
+
+#[test]
+fn unreadable_input_is_3_and_named() {
+    let ran = run(&["grasp", "no_such_cloud.pcd", "--json"]).ended(3);
+    assert!(ran.stderr.contains("no_such_cloud.pcd"));
+    let report = ran.json();
+    assert!(report["plane"].is_null() && report["cloud"].is_null());
+    assert!(report["message"].as_str().unwrap().contains("no_such_cloud.pcd"));
+    let ran = run(&["demo", "--gripper", "no_such_gripper"]).ended(3);
+    assert!(ran.stderr.contains("panda_hand"), "built-in grippers are offered: {}", ran.stderr);
+    let ran = run_on(&["grasp", "-"], b"").ended(3);
+    assert!(ran.stderr.contains("standard input"), "{}", ran.stderr);
+}
+
+#[test]
+fn no_table_is_4_with_a_report_whose_plane_is_null() {
+    // a ball in the air
+    let mut cloud = String::new();
+    for i in 0..60 {
+        for j in 0..60 {
+            let (s, c) = (f64::from(i) * 0.05).sin_cos();
+            let (t, u) = (f64::from(j) * 0.1).sin_cos();
+            cloud += &format!("{} {} {}\n", 0.1 * s * u, 0.1 * s * t, 1.0 + 0.1 * c);
+        }
+    }
+    let [labels, grasps] = ["ball.npy", "ball.json"].map(scratch);
+    let options = ["grasp", "-", "--json", "--labels", text(&labels), "--grasps", text(&grasps)];
+    let ran = run_on(&options, cloud.as_bytes()).ended(4);
+    let report = ran.json();
+    assert!(report["plane"].is_null() && report["objects"].as_array().unwrap().is_empty());
+    assert!(report["message"].as_str().unwrap().contains("--segmented"), "{report}");
+    assert!(labels.exists() && grasps.exists(), "programs find what they asked for");
+    run_on(&["grasp", "-", "--segmented"], cloud.as_bytes()).ended(0);
+}
+
+#[test]
+fn output_that_cannot_be_written_is_5_and_named() {
+    for option in ["--png", "--labels", "--grasps"] {
+        let ran = run(&["demo", option, "/no_such_folder/file"]).ended(5);
+        assert!(ran.stderr.contains("/no_such_folder/file"), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let mut command = command(&["demo"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
