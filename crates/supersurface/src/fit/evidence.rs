@@ -8,6 +8,9 @@ use crate::Vector;
 /// Points of a scan are correlated: about so many carry the evidence of one.
 const PATCH: f64 = 8.0;
 
+/// Fewer points on the wall of a hole than this show none.
+const LEAST_INNER: usize = 12;
+
 /// By how many nats a point the toroid explains the same points better, after the price of its further
 /// parameter (half a logarithm of the independent points, as in BIC). Positive: the toroid.
 pub(super) fn toroid_margin(ellipsoid: &Hypothesis, toroid: &Hypothesis, points: usize) -> f64 {
@@ -58,5 +61,6 @@ pub(super) fn shows_hole(
         }
     }
     let n = points.len() as f64;
-    inliers as f64 > 0.6 * n && inner as f64 > 0.025 * n && (blocked as f64) < 0.03 * n
+    let enough = inner as f64 > 0.025 * n && inner >= LEAST_INNER;
+    inliers as f64 > 0.6 * n && enough && (blocked as f64) < 0.03 * n
 }

@@ -16,7 +16,7 @@ impl Law {
     /// Scale above which deviations are no longer noise. A camera's is far below a twentieth of an object's
     /// size: a surface that explains most points well and leaves the rest out is better than one that explains
     /// all of them badly.
-    const fn largest_scale(self) -> f64 {
+    pub(super) const fn largest_scale(self) -> f64 {
         match self {
             Self::Gaussian => 1.0,
             Self::StudentT => 0.05,

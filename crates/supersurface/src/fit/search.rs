@@ -33,6 +33,8 @@ const BEFORE: f64 = 0.15;
 const HOVERING: f64 = 0.8;
 /// A fit with a lesser share of inliers explains nothing.
 const LEAST_SHARE: f64 = 0.1;
+/// A toroid that explains its points badly must be nearer to them than the ellipsoid by this logarithm.
+const CLEARLY: f64 = 0.25;
 /// Noise is never estimated below this share of the cloud's size.
 const NOISE_FLOOR: f64 = 1e-5;
 /// The support is known no better than this share of the cloud's size.
@@ -192,12 +194,25 @@ impl Normalised {
             return (ellipsoid, 0.0);
         }
         let toroid = self.best(Family::Supertoroid);
-        let margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
+        let mut margin = toroid_margin(&ellipsoid, &toroid, self.fine.len());
+        let poor = |h: &Hypothesis| h.mixture.scale > 0.99 * h.mixture.law.largest_scale();
+        if poor(&ellipsoid) && poor(&toroid) {
+            // neither explains the points (a bowl): a ring that is clearly nearer to most of many says more
+            let nearer = (self.typical(&ellipsoid) / self.typical(&toroid)).ln();
+            margin = if self.points.len() < FINE { -1.0 } else { nearer - CLEARLY };
+        }
         if margin > 0.0 && shows_hole(&toroid, &self.points, self.terms.viewpoint) {
             (toroid, margin)
         } else {
             (ellipsoid, -margin)
         }
+    }
+
+    /// Median distance of the points.
+    fn typical(&self, h: &Hypothesis) -> f64 {
+        let mut row = [0.0; COUNT];
+        let distances = self.points.iter().map(|x| distance::<false>(&h.parameters, x, &mut row));
+        quantile(&mut distances.map(f64::abs).collect::<Vec<_>>(), 0.5)
     }
 
     /// A hole shows itself by points or by free lines of sight that lie deep in the convex body.

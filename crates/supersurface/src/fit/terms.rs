@@ -70,6 +70,10 @@ impl Normal {
 /// Standard deviation of the logarithm of an extent about the mean of the three: weak on purpose.
 const ASPECT_DEVIATION: f64 = 1.2;
 
+/// Nats that a body on a single view pays for growing an extent e-fold: where nothing speaks for a hidden side,
+/// it is small.
+const SIZE_WEIGHT: f64 = 3.0;
+
 /// What the terms stand beside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beside<'a> {
@@ -126,6 +130,9 @@ impl Terms {
         self.add_support(s, beside.points, beside.scale, to);
         add_intrusions(s, beside, to);
         self.add_reach(s, beside.points, to);
+        if self.closed.is_none() {
+            add_size(s, to);
+        }
         add_aspect(s, to);
     }
 
@@ -296,6 +303,17 @@ fn near(s: &Parameters, from: &Vector, to: &Vector) -> Option<(f64, f64)> {
     let reach = ((3.0 - nearest) / squared).sqrt();
     let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
     (low < high).then_some((low, high))
+}
+
+/// `λ Σ ln h_i` over the three half extents.
+fn add_size(s: &Parameters, to: &mut Normal) {
+    for (i, half) in s.half_extents().iter().enumerate() {
+        to.cost += SIZE_WEIGHT * half.ln();
+        to.gradient[i] += SIZE_WEIGHT;
+        if s.family == Family::Supertoroid && i < 2 {
+            to.gradient[RING] += SIZE_WEIGHT / (1.0 + s.ring);
+        }
+    }
 }
 
 /// `½ Σ (ln h_i - mean)² / σ²` over the three half extents.
