@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use supersurface::cloud::PointCloud;
-use supersurface::grasp::{Boxed, Grasp, Gripper, Kind};
-use supersurface::nalgebra::{Translation3, center};
+use supersurface::grasp::{Grasp, Gripper, Kind};
+use supersurface::nalgebra::center;
 use supersurface::picture::{Colour, Image, Picture, View, mix};
 use supersurface::pipeline::{Object, Report};
-use supersurface::{Point, Pose, Vector};
+use supersurface::{Point, Vector};
 
 const WIDTH: usize = 800;
 const HEIGHT: usize = 720;
@@ -150,30 +150,19 @@ fn caption(id: usize, object: &Object) -> String {
     words
 }
 
-/// The gripper's boxes where the grasp puts them, and the way in.
+/// A sign of the gripper where the grasp puts it, and the way in. Its real boxes would hide the scene.
 fn draw_gripper(picture: &mut Picture, gripper: &Gripper, grasp: &Grasp) {
-    let mut boxed = |b: &Boxed, pose: &Pose, colour: Colour, alpha: f64| {
-        picture.boxed(pose, &b.center, &b.size, colour, alpha);
-    };
-    if let Kind::Jaw(jaw) = &gripper.kind {
-        // inside grasps name the distance over the outer faces
-        let gap = match (grasp.inside, jaw.outer_width_closed) {
-            (true, Some(closed)) => grasp.opening - closed,
-            _ => grasp.opening,
-        };
-        for side in [1.0, -1.0] {
-            for part in &jaw.finger {
-                let mut moved = *part;
-                moved.center.x = side * (part.center.x + 0.5 * gap);
-                boxed(&moved, &grasp.pose, STEEL, 0.9);
-            }
+    match &gripper.kind {
+        Kind::Jaw(jaw) => {
+            // inside grasps name the distance over the outer faces
+            let gap = match (grasp.inside, jaw.outer_width_closed) {
+                (true, Some(closed)) => grasp.opening - closed,
+                _ => grasp.opening,
+            };
+            picture.jaw(&grasp.pose, gap, jaw.finger_depth - jaw.tip_beyond_tcp, STEEL);
+        }
+        Kind::Suction(cup) => {
+            picture.cup(&grasp.pose, cup.lip_radius, STEEL);
         }
     }
-    // the palm or stem next to the fingers: the wrist would hide the scene
-    if let Some(part) = gripper.body.first() {
-        boxed(part, &grasp.pose, STEEL, 0.45);
-    }
-    let away = Translation3::from(-Vector::z() * gripper.approach_distance);
-    let start = (grasp.pose * away) * Point::origin();
-    picture.arrow(&start, &(grasp.pose * Point::origin()), [200, 30, 60], 2.0);
 }
