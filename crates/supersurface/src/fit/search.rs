@@ -26,7 +26,9 @@ const FINE_RAYS: usize = 48;
 const SHORTLIST: usize = 10;
 const KEPT: usize = 4;
 /// Share of points deep inside a convex body from which it may be hollow.
-const HOLLOW: f64 = 0.01;
+const HOLLOW: f64 = 0.02;
+/// Share of the lines of sight through a convex body from which it may be hollow.
+const CROSSED: f64 = 0.03;
 /// How far before a seen point nothing is, in normalised lengths.
 const BEFORE: f64 = 0.15;
 /// A piece stands on the support when the gap below it is less than this share of its size.
@@ -224,7 +226,9 @@ impl Normalised {
         let mut intrusions = Vec::new();
         self.terms.deepest_on_rays(&h.parameters, FINE_RAYS, true, &mut intrusions);
         let through = intrusions.iter().filter(|x| is_deep(x)).count();
-        within as f64 > HOLLOW * self.points.len() as f64 || through > 0
+        let looked = self.terms.free.len().min(FINE_RAYS) + self.terms.before.len().min(FINE_RAYS);
+        within as f64 > HOLLOW * self.points.len() as f64
+            || through as f64 > CROSSED * looked as f64
     }
 
     fn judge(&self, view: &View<'_>, h: &Hypothesis, margin: f64) -> Result<Fit, FitError> {

@@ -74,11 +74,15 @@ pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option
         boxes.iter().map(|b| b.center.coords.norm() + 0.5 * b.size.norm()).fold(0.0, f64::max);
     let reach = radius + SWEEP[SWEEP.len() - 1];
     let origin = pose.translation.vector;
+    let (low, high) = swept(boxes);
     let meets = |p: &Point| {
         if (p.coords - origin).norm_squared() > reach * reach {
             return false;
         }
         let q = inverse * p;
+        if !(0..3).all(|k| (low[k]..=high[k]).contains(&q[k])) {
+            return false;
+        }
         boxes.iter().any(|b| {
             let half = b.size * 0.5 + Vector::repeat(POINT_MARGIN);
             let d = q - b.center;
@@ -106,6 +110,16 @@ pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option
         }
     }
     None
+}
+
+/// The box around all boxes on their way in.
+fn swept(boxes: &[Boxed]) -> (Point, Point) {
+    let none = (Point::from([f64::INFINITY; 3]), Point::from([f64::NEG_INFINITY; 3]));
+    boxes.iter().fold(none, |(low, high), b| {
+        let half = b.size * 0.5 + Vector::repeat(POINT_MARGIN);
+        let back = Vector::z() * SWEEP[SWEEP.len() - 1];
+        (low.inf(&(b.center - half - back)), high.sup(&(b.center + half)))
+    })
 }
 
 /// Height of the lowest corner of a box.

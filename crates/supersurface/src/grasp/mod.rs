@@ -11,6 +11,7 @@ mod proposals;
 mod quality;
 mod section;
 mod sight;
+mod strip;
 mod suction;
 mod surroundings;
 mod sweep;

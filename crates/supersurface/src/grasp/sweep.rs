@@ -8,17 +8,20 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::gripper::Jaw;
 use super::quality::Candidate;
-use super::surroundings::{Local, Spot};
+use super::strip::{Strips, Turned};
+use super::surroundings::Local;
 use crate::{Pose, Vector};
 
 /// Distance between strips, in metres.
-const STRIDE: f64 = 0.008;
+const STRIDE: f32 = 0.008;
 /// How far the tips go below the highest matter of a strip.
-const DEPTHS: [f64; 5] = [0.042, 0.032, 0.022, 0.014, 0.008];
+const DEPTHS: [f32; 5] = [0.042, 0.032, 0.022, 0.014, 0.008];
 /// The jaw closes about level.
 const LEVEL: f64 = 0.5;
 /// Least width that is worth closing on.
 const LEAST_WIDTH: f64 = 0.003;
+/// How near to an end of a stretch a pad touches, in metres.
+const END: f32 = 0.005;
 /// Tips stay this far above the table.
 const FLOOR: f64 = 0.003;
 /// Candidates that are kept for judgement.
@@ -30,10 +33,9 @@ type Ranked = (f64, Candidate);
 /// The most promising candidates, best first.
 pub(super) fn sweep(local: &Local, jaw: &Jaw) -> Vec<Candidate> {
     let mut found: Vec<Ranked> = Vec::new();
-    let mut strip = Strip::default();
+    let mut strips = Strips::new(&local.spots, &local.centre);
     for rotation in orientations(local.heights[1] - local.heights[0] > 0.04) {
-        strip.fill(&rotation, &local.spots);
-        strip.search(&rotation, local, jaw, &mut found);
+        Turn { rotation, local, jaw, strips: &mut strips }.search(&mut found);
     }
     // stable, so that ties keep the order of the search
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -84,176 +86,122 @@ fn orientations(tall: bool) -> Vec<Rotation3<f64>> {
     out
 }
 
-/// A place in the tool's directions: coordinates, cosine between its normal and the closing axis, and its weight
-/// as evidence (0 where no normal is known).
-#[derive(Clone, Copy, Debug, Default)]
-struct Turned {
-    x: f64,
-    y: f64,
-    z: f64,
-    cosine: f64,
-    evidence: f64,
-    seen: bool,
+/// One approach and closing direction of the search, with the object turned to it.
+struct Turn<'a> {
+    rotation: Rotation3<f64>,
+    local: &'a Local,
+    jaw: &'a Jaw,
+    strips: &'a mut Strips,
 }
 
-/// All places of the object seen along one approach.
-#[derive(Default)]
-struct Strip {
-    /// In rising y.
-    all: Vec<Turned>,
-    /// Those of one strip in rising x.
-    inside: Vec<Turned>,
-}
-
-impl Strip {
-    fn fill(&mut self, rotation: &Rotation3<f64>, spots: &[Spot]) {
-        self.all.clear();
-        self.all.extend(spots.iter().map(|s| {
-            let q = rotation.inverse_transform_vector(&s.at.coords);
-            let known = s.normal != Vector::zeros();
-            Turned {
-                x: q.x,
-                y: q.y,
-                z: q.z,
-                cosine: rotation.matrix().column(0).dot(&s.normal),
-                evidence: match (s.seen, known) {
-                    (true, true) => 1.0,
-                    (false, true) => 0.6,
-                    _ => 0.0,
-                },
-                seen: s.seen,
-            }
-        }));
-        self.all.sort_unstable_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
-    }
-
-    fn search(
-        &mut self,
-        rotation: &Rotation3<f64>,
-        local: &Local,
-        jaw: &Jaw,
-        found: &mut Vec<Ranked>,
-    ) {
-        let (Some(first), Some(last)) = (self.all.first(), self.all.last()) else { return };
-        let (low, high) = (first.y, last.y);
-        let half = 0.5 * jaw.pad_width + 0.001;
+impl Turn<'_> {
+    fn search(&mut self, found: &mut Vec<Ranked>) {
+        self.strips.turn(&self.rotation);
+        let [low, high] = self.strips.along();
+        let half = 0.5 * self.jaw.pad_width as f32 + 0.001;
         let strips = ((high - low) / STRIDE).clamp(0.0, 200.0) as usize + 1;
         for k in 0..strips {
             let y = if strips == 1 {
                 0.5 * (low + high)
             } else {
-                low + (high - low) * (k as f64 + 0.5) / strips as f64
+                low + (high - low) * (k as f32 + 0.5) / strips as f32
             };
-            let from = self.all.partition_point(|t| t.y < y - half);
-            let to = self.all.partition_point(|t| t.y <= y + half);
-            if to - from < 6 {
+            let (places, top) = self.strips.open(y, half);
+            if places < 6 {
                 continue;
             }
-            self.inside.clear();
-            self.inside.extend_from_slice(&self.all[from..to]);
-            self.inside.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.z.total_cmp(&b.z)));
-            let top = self.inside.iter().map(|t| t.z).fold(f64::INFINITY, f64::min);
+            let deepest = self.jaw.finger_depth as f32 - 0.004;
             for depth in DEPTHS {
-                let depth = depth.min(jaw.finger_depth - 0.004);
-                let tip = top + depth;
-                self.stretches(rotation, local, jaw, y, tip, found);
+                self.close(y, top + depth.min(deepest), found);
             }
-            if let Some(tip) = self.floor(rotation, local, y)
-                && tip - top < jaw.finger_depth - 0.004
+            if let Some(tip) = self.floor(y)
+                && tip - top < deepest
                 && tip > top + 0.004
             {
-                self.stretches(rotation, local, jaw, y, tip, found);
+                self.close(y, tip, found);
             }
         }
     }
 
     /// How far the tips may go along a steep approach before they meet the table.
-    fn floor(&self, rotation: &Rotation3<f64>, local: &Local, y: f64) -> Option<f64> {
-        let z = rotation.matrix().column(2).z;
-        if !local.has_table || z > -0.85 {
+    fn floor(&self, y: f32) -> Option<f32> {
+        let m = self.rotation.matrix();
+        if !self.local.has_table || m.m33 > -0.85 {
             return None;
         }
-        let xs = &self.inside;
-        let x = 0.5 * (xs.first()?.x + xs.last()?.x);
-        let m = rotation.matrix();
-        // height of the tip at (x, y, t): m31 x + m32 y + m33 t
-        Some((FLOOR - m.m31 * x - m.m32 * y) / z)
+        let x = f64::from(self.strips.middle()?);
+        // height of the tip at (x, y, t): that of the middle plus m31 x + m32 y + m33 t
+        let height = FLOOR - self.local.centre.z - m.m31 * x - m.m32 * f64::from(y);
+        Some((height / m.m33) as f32)
     }
 
-    /// Stretches of matter above the tips with room for a finger on both sides.
-    fn stretches(
-        &self,
-        rotation: &Rotation3<f64>,
-        local: &Local,
-        jaw: &Jaw,
-        y: f64,
-        tip: f64,
-        found: &mut Vec<Ranked>,
-    ) {
-        let room = jaw.finger_thickness + 2.0 * jaw.clearance.min(0.004);
-        let mut start: Option<f64> = None;
-        let mut end = 0.0;
-        let above = self.inside.iter().filter(|t| t.z < tip + 0.001);
-        for x in above.map(|t| t.x).chain([f64::INFINITY]) {
-            match start {
-                Some(from) if x - end > room => {
-                    self.propose(rotation, local, jaw, [from, end, y, tip], found);
-                    start = Some(x);
-                }
-                None => start = Some(x),
-                _ => {}
-            }
-            end = x;
-        }
+    /// Closes on every stretch of matter above the tips.
+    fn close(&self, y: f32, tip: f32, found: &mut Vec<Ranked>) {
+        let room = self.jaw.finger_thickness + 2.0 * self.jaw.clearance.min(0.004);
+        self.strips.stretches(tip, room as f32, |from, to| {
+            found.extend(self.propose([from, to, y, tip]));
+        });
     }
 
-    fn propose(
-        &self,
-        rotation: &Rotation3<f64>,
-        local: &Local,
-        jaw: &Jaw,
-        [from, to, y, tip]: [f64; 4],
-        found: &mut Vec<Ranked>,
-    ) {
-        let width = to - from;
+    fn propose(&self, [from, to, y, tip]: [f32; 4]) -> Option<Ranked> {
+        let jaw = self.jaw;
+        let width = f64::from(to - from);
         if width < LEAST_WIDTH || width + jaw.clearance > jaw.max_opening {
-            return;
+            return None;
         }
-        let cone = 1.0 / (1.0 + jaw.mu * jaw.mu).sqrt();
-        let (mut good, mut bad, mut seen) = ([0.0f64; 2], 0.0, 0usize);
-        for t in &self.inside {
-            if t.z > tip || t.z < tip - jaw.pad_length || t.x < from - 1e-9 || t.x > to + 1e-9 {
-                continue;
-            }
-            seen += usize::from(t.seen);
-            for (side, (gap, cosine)) in
-                [(to - t.x, t.cosine), (t.x - from, -t.cosine)].into_iter().enumerate()
-            {
-                if gap < 0.005 {
-                    if cosine > cone {
-                        good[side] += t.evidence;
-                    } else {
-                        bad += t.evidence;
+        let sides = self.sides([from, to, tip])?;
+        let [good, other, bad] = sides.map(f64::from);
+        let tcp = f64::from(tip) - jaw.tip_beyond_tcp;
+        let middle = Vector::new(f64::from(0.5 * (from + to)), f64::from(y), tcp);
+        // the lever from the object's middle, which is the origin here
+        let lever = middle.yz().norm();
+        let full = |v: f64| (v / 8.0).min(1.0);
+        let value = 0.5 * (full(good) + full(other)) + 0.5 * full(good.min(other))
+            - 0.5 * bad / (bad + good + other + 1.0)
+            - 5.0 * lever
+            - 0.15 * (1.0 + self.rotation.matrix().m33)
+            - 0.5 * (1.0 - ((jaw.max_opening - width - jaw.clearance) / 0.015).min(1.0));
+        let at = self.local.centre.coords + self.rotation * middle;
+        let turn = UnitQuaternion::from_rotation_matrix(&self.rotation);
+        let pose = Pose::from_parts(at.into(), turn);
+        Some((value, Candidate { pose, width, inside: false, source: "sweep" }))
+    }
+
+    /// Evidence of places between the pads whose normals lie in the friction cone, at the +x end and at the -x
+    /// end, and of those outside the cone; `None` where next to nothing was seen.
+    fn sides(&self, [from, to, tip]: [f32; 3]) -> Option<[f32; 3]> {
+        let cone = (1.0 / self.jaw.mu.hypot(1.0)) as f32;
+        let pads = (tip - self.jaw.pad_length as f32)..=tip;
+        let mut seen = 0;
+        let mut out = [0.0; 3];
+        let mut look = |places: &[Turned], end: bool| {
+            for t in places {
+                if !pads.contains(&t.z) || t.x < from || t.x > to {
+                    continue;
+                }
+                seen += usize::from(t.seen);
+                if !end {
+                    if seen >= 3 {
+                        return;
+                    }
+                    continue;
+                }
+                for (side, (gap, cosine)) in
+                    [(to - t.x, t.cosine), (t.x - from, -t.cosine)].into_iter().enumerate()
+                {
+                    if gap < END {
+                        out[if cosine > cone { side } else { 2 }] += t.evidence;
                     }
                 }
             }
+        };
+        if to - from < 4.0 * END {
+            look(self.strips.within(from, to), true);
+        } else {
+            look(self.strips.within(from, from + END), true);
+            look(self.strips.within(to - END, to), true);
+            look(self.strips.within(from + 1.5 * END, to - 1.5 * END), false);
         }
-        if seen < 3 {
-            return;
-        }
-        let middle = Vector::new(0.5 * (from + to), y, tip - jaw.tip_beyond_tcp);
-        let at = rotation * middle;
-        let closing: Vector = rotation.matrix().column(0).into();
-        let arm = local.centre.coords - at;
-        let lever = (arm - closing * arm.dot(&closing)).norm();
-        let full = |v: f64| (v / 8.0).min(1.0);
-        let approach: Vector = rotation.matrix().column(2).into();
-        let value = 0.5 * (full(good[0]) + full(good[1])) + 0.5 * full(good[0].min(good[1]))
-            - 0.5 * bad / (bad + good[0] + good[1] + 1.0)
-            - 5.0 * lever
-            - 0.15 * (1.0 + approach.z)
-            - 0.5 * (1.0 - ((jaw.max_opening - width - jaw.clearance) / 0.015).min(1.0));
-        let pose = Pose::from_parts(at.into(), UnitQuaternion::from_rotation_matrix(rotation));
-        found.push((value, Candidate { pose, width, inside: false, source: "sweep" }));
+        (seen >= 3).then_some(out)
     }
 }
