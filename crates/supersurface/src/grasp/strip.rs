@@ -1,18 +1,20 @@
 //! The places of an object along one approach, cut into strips as wide as the pads.
 //!
-//! The search turns the object more than a hundred times, so places are put into rows across the pads and
-//! bins along the closing axis by counting, not by comparing, and in single precision about the object's
-//! middle. Each bin knows its highest place, so that a stretch of matter above the tips is found without
-//! looking at places.
+//! The search turns the object more than a hundred times, so places are put into cells by counting, not by
+//! comparing, in single precision about the object's middle: rows across the pads, three to a strip, and bins
+//! along the closing axis. Each cell knows its highest place, so that a stretch of matter above the tips is
+//! found without looking at places.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::Rotation3;
 
 use super::surroundings::Spot;
 use crate::{Point, Vector};
 
-/// Size of rows and bins, in metres; larger where an object needs more than `MOST`.
-const CELL: f32 = 0.002;
-const MOST: f32 = 2000.0;
+/// Rows of a strip: strips overlap by two of them.
+pub(super) const ROWS: usize = 3;
+/// Size of a bin, in metres; larger where an object needs more than `MOST` bins or rows.
+const BIN: f32 = 0.0025;
+const MOST: f32 = 400.0;
 /// A place this far below the tips (along the approach) still counts as above them.
 const UNDER: f32 = 0.001;
 
@@ -20,22 +22,20 @@ const UNDER: f32 = 0.001;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turned {
     pub(super) x: f32,
-    pub(super) y: f32,
     pub(super) z: f32,
     /// Cosine between its normal and the closing axis.
     pub(super) cosine: f32,
     /// Its weight as evidence of a side: 0 where no normal is known.
     pub(super) evidence: f32,
     pub(super) seen: bool,
-    row: u16,
-    bin: u16,
+    cell: u32,
 }
 
 /// A place before it is turned.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    at: Vector3<f32>,
-    normal: Vector3<f32>,
+    at: [f32; 3],
+    normal: [f32; 3],
     evidence: f32,
     seen: bool,
 }
@@ -44,80 +44,23 @@ struct Place {
 #[derive(Clone, Copy, Default)]
 struct Axis {
     low: f32,
-    high: f32,
-    cell: f32,
+    size: f32,
     cells: usize,
 }
 
 impl Axis {
-    fn new([low, high]: [f32; 2]) -> Self {
-        let cell = CELL.max((high - low) / MOST);
-        Self { low, high, cell, cells: ((high - low) / cell) as usize + 1 }
+    fn new([low, high]: [f32; 2], size: f32) -> Self {
+        let size = size.max((high - low) / MOST);
+        let cells = ((high - low) / size) as usize + 1;
+        // centred, so that a strip may lie over the object's middle
+        Self { low: 0.5 * (low + high - size * cells as f32), size, cells }
     }
 
     #[inline]
     fn cell_of(&self, value: f32) -> usize {
-        // in i32, as a conversion to a wider integer costs more than all the rest
-        let k = ((value - self.low) * (1.0 / self.cell)) as i32;
+        // by way of i32, as a conversion to a wider integer costs more than all the rest
+        let k = ((value - self.low) * (1.0 / self.size)) as i32;
         (k.max(0) as usize).min(self.cells - 1)
-    }
-}
-
-/// Places sorted by the cells of one axis: those of cell `k` are `starts[k]..starts[k + 1]`.
-#[derive(Default)]
-struct Sorted {
-    places: Vec<Turned>,
-    starts: Vec<u32>,
-    axis: Axis,
-}
-
-impl Sorted {
-    /// Takes the places that `places` gives (twice the same); `cell` names the cell of each.
-    fn fill<'a>(
-        &mut self,
-        axis: Axis,
-        places: impl Iterator<Item = &'a Turned> + Clone,
-        cell: impl Fn(&Turned) -> u16,
-    ) {
-        self.axis = axis;
-        self.starts.clear();
-        self.starts.resize(axis.cells + 1, 0);
-        for t in places.clone() {
-            self.starts[usize::from(cell(t)) + 1] += 1;
-        }
-        let mut count = 0;
-        for start in &mut self.starts {
-            count += *start;
-            *start = count;
-        }
-        if self.places.len() < count as usize {
-            self.places.resize(count as usize, Turned::default());
-        }
-        // filling moves each start to the end of its cell, which is the start of the next
-        for t in places {
-            let start = &mut self.starts[usize::from(cell(t))];
-            self.places[*start as usize] = *t;
-            *start += 1;
-        }
-        self.starts.rotate_right(1);
-        self.starts[0] = 0;
-    }
-
-    fn count(&self) -> usize {
-        self.starts.last().map_or(0, |n| *n as usize)
-    }
-
-    /// The places of all cells that [from, to] touches.
-    fn within(&self, from: f32, to: f32) -> &[Turned] {
-        if self.count() == 0 {
-            return &[];
-        }
-        let (a, b) = (self.axis.cell_of(from), self.axis.cell_of(to));
-        &self.places[self.starts[a] as usize..self.starts[b + 1] as usize]
-    }
-
-    fn cell(&self, k: usize) -> &[Turned] {
-        &self.places[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 }
 
@@ -126,11 +69,15 @@ impl Sorted {
 pub(super) struct Strips {
     places: Vec<Place>,
     turned: Vec<Turned>,
-    rows: Sorted,
-    bins: Sorted,
-    /// The cells along the closing axis.
-    across: Axis,
-    /// The highest place of each bin: its least z.
+    rows: Axis,
+    bins: Axis,
+    /// Places by cell, row after row; those of cell `k` are `starts[k]..starts[k + 1]`.
+    sorted: Vec<Turned>,
+    starts: Vec<u32>,
+    /// The highest place of each cell: its least z.
+    heights: Vec<f32>,
+    /// First row of the open strip, and the highest place of each of its bins.
+    row: usize,
     tops: Vec<f32>,
 }
 
@@ -138,8 +85,8 @@ impl Strips {
     /// Takes the places of an object; `middle` becomes the origin.
     pub(super) fn new(spots: &[Spot], middle: &Point) -> Self {
         let place = |s: &Spot| Place {
-            at: (s.at - middle).cast(),
-            normal: s.normal.cast(),
+            at: (s.at - middle).cast().into(),
+            normal: s.normal.cast().into(),
             evidence: match (s.seen, s.normal != Vector::zeros()) {
                 (true, true) => 1.0,
                 (false, true) => 0.6,
@@ -150,55 +97,91 @@ impl Strips {
         Self { places: spots.iter().map(place).collect(), ..Self::default() }
     }
 
-    /// Turns all places.
-    pub(super) fn turn(&mut self, rotation: &Rotation3<f64>) {
-        let inverse: Matrix3<f32> = rotation.matrix().transpose().cast();
-        let closing: Vector3<f32> = rotation.matrix().column(0).into_owned().cast();
-        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        let Self { places, turned, rows, .. } = self;
-        turned.clear();
-        turned.extend(places.iter().map(|p| {
-            let q = inverse * p.at;
-            (low, high) =
-                ([low[0].min(q.x), low[1].min(q.y)], [high[0].max(q.x), high[1].max(q.y)]);
-            let Place { evidence, seen, .. } = *p;
-            let cosine = closing.dot(&p.normal);
-            Turned { x: q.x, y: q.y, z: q.z, cosine, evidence, seen, row: 0, bin: 0 }
-        }));
-        let [across, along] = [0, 1].map(|k| Axis::new([low[k], high[k]]));
-        for t in turned.iter_mut() {
-            (t.row, t.bin) = (along.cell_of(t.y) as u16, across.cell_of(t.x) as u16);
+    /// Turns all places and sorts them into strips of a width.
+    pub(super) fn turn(&mut self, rotation: &Rotation3<f64>, width: f32) {
+        let [x, y, z]: [[f32; 3]; 3] = rotation.matrix().cast().into();
+        let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (mut across, mut along) =
+            ([f32::INFINITY, f32::NEG_INFINITY], [f32::INFINITY, f32::NEG_INFINITY]);
+        for p in &self.places {
+            let (qx, qy) = (dot(&x, &p.at), dot(&y, &p.at));
+            across = [across[0].min(qx), across[1].max(qx)];
+            along = [along[0].min(qy), along[1].max(qy)];
         }
-        self.across = across;
-        rows.fill(along, turned.iter(), |t| t.row);
+        let (rows, bins) = (Axis::new(along, width / ROWS as f32), Axis::new(across, BIN));
+        (self.rows, self.bins) = (rows, bins);
+        self.turned.clear();
+        self.turned.extend(self.places.iter().map(|p| {
+            let (qx, qy) = (dot(&x, &p.at), dot(&y, &p.at));
+            Turned {
+                x: qx,
+                z: dot(&z, &p.at),
+                cosine: dot(&x, &p.normal),
+                evidence: p.evidence,
+                seen: p.seen,
+                cell: (rows.cell_of(qy) * bins.cells + bins.cell_of(qx)) as u32,
+            }
+        }));
+        self.sort();
     }
 
-    /// Extent across the strips.
-    pub(super) fn along(&self) -> [f32; 2] {
-        [self.rows.axis.low, self.rows.axis.high]
+    fn sort(&mut self) {
+        let Self { turned, sorted, starts, heights, .. } = self;
+        let cells = self.rows.cells * self.bins.cells;
+        starts.clear();
+        starts.resize(cells + 1, 0);
+        heights.clear();
+        heights.resize(cells, f32::INFINITY);
+        for t in turned.iter() {
+            let k = t.cell as usize;
+            starts[k + 1] += 1;
+            heights[k] = heights[k].min(t.z);
+        }
+        let mut count = 0;
+        for start in starts.iter_mut() {
+            count += *start;
+            *start = count;
+        }
+        sorted.resize(turned.len(), Turned::default());
+        // filling moves each start to the end of its cell, which is the start of the next
+        for t in turned.iter() {
+            let start = &mut starts[t.cell as usize];
+            sorted[*start as usize] = *t;
+            *start += 1;
+        }
+        starts.rotate_right(1);
+        starts[0] = 0;
     }
 
-    /// Lays open the strip `half` to each side of `y`: how many places it has, and the highest.
-    pub(super) fn open(&mut self, y: f32, half: f32) -> (usize, f32) {
-        let Self { rows, bins, tops, across, .. } = self;
-        let inside = rows.within(y - half, y + half).iter().filter(|t| (t.y - y).abs() <= half);
-        bins.fill(*across, inside, |t| t.bin);
-        tops.clear();
-        tops.extend(
-            (0..across.cells)
-                .map(|k| bins.cell(k).iter().map(|t| t.z).fold(f32::INFINITY, f32::min)),
-        );
-        let top = tops.iter().copied().fold(f32::INFINITY, f32::min);
-        (bins.count(), top)
+    /// How many strips the object has along y.
+    pub(super) fn count(&self) -> usize {
+        self.rows.cells.saturating_sub(ROWS - 1).max(1)
+    }
+
+    /// Lays open a strip: its middle along y, how many places it has, and the highest.
+    pub(super) fn open(&mut self, strip: usize) -> (f32, usize, f32) {
+        self.row = strip;
+        let bins = self.bins.cells;
+        let rows = strip..(strip + ROWS).min(self.rows.cells);
+        self.tops.clear();
+        self.tops.resize(bins, f32::INFINITY);
+        for row in rows.clone() {
+            let heights = &self.heights[row * bins..(row + 1) * bins];
+            for (top, height) in self.tops.iter_mut().zip(heights) {
+                *top = top.min(*height);
+            }
+        }
+        let count = self.starts[rows.end * bins] - self.starts[rows.start * bins];
+        let highest = self.tops.iter().copied().fold(f32::INFINITY, f32::min);
+        let middle = 0.5 * (rows.start + rows.end) as f32 * self.rows.size + self.rows.low;
+        (middle, count as usize, highest)
     }
 
     /// Middle of the open strip's extent along the closing axis.
     pub(super) fn middle(&self) -> Option<f32> {
-        let full = |k: &usize| !self.bins.cell(*k).is_empty();
-        let Axis { low, cell, cells, .. } = self.across;
-        let first = (0..cells).find(full)?;
-        let last = (0..cells).rev().find(full)?;
-        Some(low + 0.5 * cell * (first + last + 1) as f32)
+        let first = self.tops.iter().position(|t| t.is_finite())?;
+        let last = self.tops.iter().rposition(|t| t.is_finite())?;
+        Some(self.bins.low + 0.5 * self.bins.size * (first + last + 1) as f32)
     }
 
     /// Every stretch `[from, to]` of matter above the tips with more than `room` free on both sides.
@@ -207,7 +190,7 @@ impl Strips {
         for k in (0..self.tops.len()).filter(|k| self.tops[*k] < tip + UNDER) {
             open = match open {
                 None => Some((self.ends(k, tip)[0], k)),
-                Some((from, last)) if (k - last + 1) as f32 * self.across.cell <= room => {
+                Some((from, last)) if (k - last + 1) as f32 * self.bins.size <= room => {
                     Some((from, k))
                 }
                 Some((from, last)) => {
@@ -227,13 +210,21 @@ impl Strips {
     }
 
     /// Least and largest x of a bin's places above the tips.
-    fn ends(&self, k: usize, tip: f32) -> [f32; 2] {
-        let above = self.bins.cell(k).iter().filter(|t| t.z < tip + UNDER);
+    fn ends(&self, bin: usize, tip: f32) -> [f32; 2] {
+        let above = self.in_bins(bin, bin).flatten().filter(|t| t.z < tip + UNDER);
         above.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], t| [a.min(t.x), b.max(t.x)])
     }
 
-    /// The open strip's places in the bins that [from, to] touches.
-    pub(super) fn within(&self, from: f32, to: f32) -> &[Turned] {
-        self.bins.within(from, to)
+    /// The open strip's places in the bins that [from, to] touches, row by row.
+    pub(super) fn within(&self, from: f32, to: f32) -> impl Iterator<Item = &[Turned]> {
+        self.in_bins(self.bins.cell_of(from), self.bins.cell_of(to))
+    }
+
+    fn in_bins(&self, first: usize, last: usize) -> impl Iterator<Item = &[Turned]> {
+        let bins = self.bins.cells;
+        (self.row..(self.row + ROWS).min(self.rows.cells)).map(move |row| {
+            let [a, b] = [row * bins + first, row * bins + last + 1];
+            &self.sorted[self.starts[a] as usize..self.starts[b] as usize]
+        })
     }
 }

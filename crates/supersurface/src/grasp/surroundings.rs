@@ -14,6 +14,8 @@ use crate::{Direction, Point, Pose, Vector};
 const SPACING: f64 = 0.003;
 /// Spacing of the points that stand for obstacles and for what was not seen.
 const COARSE: f64 = 0.005;
+/// Most hidden places under a seen one, at twice the spacing: what is higher than 2 m is no object.
+const TALLEST: u32 = 200;
 /// Radius in which a normal is taken.
 const NORMAL_RADIUS: f64 = 0.009;
 /// A fit decides about hidden sides up to this median residual, and from this share of inliers.
@@ -40,6 +42,8 @@ pub struct Surroundings<'a> {
     /// True when z = 0 of that frame is a table.
     pub(super) has_table: bool,
     sight: Option<Sight>,
+    /// Points that a gripper must not meet: of each object, and last of everything else.
+    matter: Vec<Vec<Point>>,
 }
 
 /// One object with what is around it, in the frame of the table.
@@ -66,7 +70,9 @@ impl<'a> Surroundings<'a> {
         let radius = points().map(|p| (p - middle).norm()).fold(0.0, f64::max) + 0.1;
         let frame = table_frame(segmentation.support.as_ref(), cloud.viewpoint, &middle);
         let sight = Sight::new(cloud, &middle, radius);
-        Self { cloud, segmentation, frame, has_table: segmentation.support.is_some(), sight }
+        let matter = matter(cloud, segmentation, &frame, sight.as_ref());
+        let has_table = segmentation.support.is_some();
+        Self { cloud, segmentation, frame, has_table, sight, matter }
     }
 
     /// The object of an index; `None` for one without points.
@@ -83,7 +89,7 @@ impl<'a> Surroundings<'a> {
         let (low, high) = spots.iter().fold(None, |b: Option<(Point, Point)>, s| {
             Some(b.map_or((s.at, s.at), |(l, h)| (l.inf(&s.at), h.sup(&s.at))))
         })?;
-        let obstacles = self.obstacles(indices, &low, &high);
+        let obstacles = self.obstacles(object, &low, &high);
         let trusted =
             fit.filter(|f| f.residual < TRUSTED_RESIDUAL && f.inlier_share() > TRUSTED_SHARE);
         let seen = spots.len();
@@ -181,58 +187,68 @@ impl<'a> Surroundings<'a> {
             let foot = columns[i as usize];
             let mut top = 0.0f64;
             grid.within(&foot, COARSE, |k, _| top = top.max(seen[k as usize].z));
-            let mut z = 0.5 * COARSE;
-            while z < top - COARSE {
+            let heights = (0..2 * TALLEST).map(|k| COARSE * (f64::from(k) + 0.5));
+            for z in heights.take_while(|z| *z < top - COARSE) {
                 let at = Point::new(foot.x, foot.y, z);
                 if !self.is_free(&at) {
                     spots.push(Spot { at, normal: Vector::zeros(), seen: false });
                 }
-                z += COARSE;
             }
         }
     }
 
-    /// Points within a gripper's reach that are not the object's, thinned; those of other things also stand
-    /// for what is under them.
-    fn obstacles(&self, indices: &[u32], low: &Point, high: &Point) -> Vec<Point> {
+    /// What stands around an object within a gripper's reach.
+    fn obstacles(&self, object: usize, low: &Point, high: &Point) -> Vec<Point> {
         const REACH: f64 = 0.16;
-        let mut own = vec![false; self.cloud.points.len()];
-        for i in indices {
-            if let Some(o) = own.get_mut(*i as usize) {
-                *o = true;
+        let (low, high) = (low - Vector::repeat(REACH), high + Vector::repeat(REACH));
+        let near = |p: &&Point| (0..3).all(|k| p[k] > low[k] && p[k] < high[k]);
+        let others = self.matter.iter().enumerate().filter(|(k, _)| *k != object);
+        others.flat_map(|(_, points)| points.iter().filter(near)).copied().collect()
+    }
+}
+
+/// The points of each object above the table, and last those of everything else, in the frame of the table:
+/// thinned, with points under them that stand for what they hide.
+fn matter(
+    cloud: &PointCloud,
+    segmentation: &Segmentation,
+    frame: &Pose,
+    sight: Option<&Sight>,
+) -> Vec<Vec<Point>> {
+    let has_table = segmentation.support.is_some();
+    let margin = if has_table { 3.0 * segmentation.support_noise + 0.004 } else { f64::MIN };
+    let inward = frame.inverse();
+    let rest = segmentation.objects.len();
+    let mut owners = vec![rest; cloud.points.len()];
+    for (k, object) in segmentation.objects.iter().enumerate() {
+        for i in object {
+            if let Some(owner) = owners.get_mut(*i as usize) {
+                *owner = k;
             }
         }
-        let inward = self.frame.inverse();
-        let margin =
-            if self.has_table { 3.0 * self.segmentation.support_noise + 0.004 } else { f64::MIN };
-        let (low, high) = (low - Vector::repeat(REACH), high + Vector::repeat(REACH));
-        let near: Vec<Point> = self
-            .cloud
-            .points
-            .iter()
-            .zip(&own)
-            .filter(|(_, own)| !**own)
-            .map(|(p, _)| inward * p)
-            .filter(|p| p.z > margin && (0..3).all(|k| p[k] > low[k] && p[k] < high[k]))
-            .collect();
+    }
+    let mut groups: Vec<Vec<Point>> = vec![Vec::new(); rest + 1];
+    for (p, owner) in cloud.points.iter().zip(owners) {
+        let p = inward * p;
+        if p.z > margin && p.coords.iter().all(|v| v.is_finite()) {
+            groups[owner].push(p);
+        }
+    }
+    let is_free = |p: &Point| sight.is_some_and(|s| s.is_free(&(frame * p)));
+    let solid = |points: &Vec<Point>| {
         let mut out = Vec::new();
-        if let Some(grid) = VoxelGrid::new(&near, 0..near.len() as u32, COARSE) {
-            for i in grid.representatives() {
-                let p = near[i as usize];
-                out.push(p);
-                let mut z = p.z - 2.0 * COARSE;
-                while self.has_table && z > 0.0 {
-                    let below = Point::new(p.x, p.y, z);
-                    if self.is_free(&below) {
-                        break;
-                    }
-                    out.push(below);
-                    z -= 2.0 * COARSE;
-                }
-            }
+        let Some(grid) = VoxelGrid::new(points, 0..points.len() as u32, COARSE) else { return out };
+        for i in grid.representatives() {
+            let p = points[i as usize];
+            out.push(p);
+            let below = (1..TALLEST).map(|k| p.z - 2.0 * COARSE * f64::from(k));
+            let hidden = below.take_while(|z| has_table && *z > 0.0);
+            let places = hidden.map(|z| Point::new(p.x, p.y, z));
+            out.extend(places.take_while(|p| !is_free(p)));
         }
         out
-    }
+    };
+    groups.iter().map(solid).collect()
 }
 
 fn get(cloud: &PointCloud, i: u32) -> Option<Point> {

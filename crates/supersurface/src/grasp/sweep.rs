@@ -8,12 +8,12 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::gripper::Jaw;
 use super::quality::Candidate;
-use super::strip::{Strips, Turned};
+use super::strip::Strips;
 use super::surroundings::Local;
 use crate::{Pose, Vector};
 
-/// Distance between strips, in metres.
-const STRIDE: f32 = 0.008;
+/// Matter this far beside the pads is in their way, in metres.
+const BESIDE: f32 = 0.001;
 /// How far the tips go below the highest matter of a strip.
 const DEPTHS: [f32; 5] = [0.042, 0.032, 0.022, 0.014, 0.008];
 /// The jaw closes about level.
@@ -96,17 +96,9 @@ struct Turn<'a> {
 
 impl Turn<'_> {
     fn search(&mut self, found: &mut Vec<Ranked>) {
-        self.strips.turn(&self.rotation);
-        let [low, high] = self.strips.along();
-        let half = 0.5 * self.jaw.pad_width as f32 + 0.001;
-        let strips = ((high - low) / STRIDE).clamp(0.0, 200.0) as usize + 1;
-        for k in 0..strips {
-            let y = if strips == 1 {
-                0.5 * (low + high)
-            } else {
-                low + (high - low) * (k as f32 + 0.5) / strips as f32
-            };
-            let (places, top) = self.strips.open(y, half);
+        self.strips.turn(&self.rotation, self.jaw.pad_width as f32 + 2.0 * BESIDE);
+        for strip in 0..self.strips.count() {
+            let (y, places, top) = self.strips.open(strip);
             if places < 6 {
                 continue;
             }
@@ -149,6 +141,9 @@ impl Turn<'_> {
         if width < LEAST_WIDTH || width + jaw.clearance > jaw.max_opening {
             return None;
         }
+        if self.meets_table([from, to, y, tip]) {
+            return None;
+        }
         let sides = self.sides([from, to, tip])?;
         let [good, other, bad] = sides.map(f64::from);
         let tcp = f64::from(tip) - jaw.tip_beyond_tcp;
@@ -167,6 +162,19 @@ impl Turn<'_> {
         Some((value, Candidate { pose, width, inside: false, source: "sweep" }))
     }
 
+    /// True when a corner of an open tip would go into the table.
+    fn meets_table(&self, [from, to, y, tip]: [f32; 4]) -> bool {
+        let m = self.rotation.matrix();
+        let thick = (self.jaw.finger_thickness + self.jaw.clearance) as f32;
+        let half = 0.5 * self.jaw.pad_width as f32;
+        let drop = |x: f32| f64::from(x) * m.m31;
+        let lowest =
+            self.local.centre.z + drop(from - thick).min(drop(to + thick)) + f64::from(y) * m.m32
+                - f64::from(half) * m.m32.abs()
+                + f64::from(tip) * m.m33;
+        self.local.has_table && lowest < 0.5 * FLOOR
+    }
+
     /// Evidence of places between the pads whose normals lie in the friction cone, at the +x end and at the -x
     /// end, and of those outside the cone; `None` where next to nothing was seen.
     fn sides(&self, [from, to, tip]: [f32; 3]) -> Option<[f32; 3]> {
@@ -174,8 +182,8 @@ impl Turn<'_> {
         let pads = (tip - self.jaw.pad_length as f32)..=tip;
         let mut seen = 0;
         let mut out = [0.0; 3];
-        let mut look = |places: &[Turned], end: bool| {
-            for t in places {
+        let mut look = |from_bin: f32, to_bin: f32, end: bool| {
+            for t in self.strips.within(from_bin, to_bin).flatten() {
                 if !pads.contains(&t.z) || t.x < from || t.x > to {
                     continue;
                 }
@@ -196,11 +204,11 @@ impl Turn<'_> {
             }
         };
         if to - from < 4.0 * END {
-            look(self.strips.within(from, to), true);
+            look(from, to, true);
         } else {
-            look(self.strips.within(from, from + END), true);
-            look(self.strips.within(to - END, to), true);
-            look(self.strips.within(from + 1.5 * END, to - 1.5 * END), false);
+            look(from, from + END, true);
+            look(to - END, to, true);
+            look(from + 1.5 * END, to - 1.5 * END, false);
         }
         (seen >= 3).then_some(out)
     }
