@@ -30,17 +30,25 @@ pub fn normals(cloud: &PointCloud, indices: &[u32], radius: f64) -> Vec<Option<D
     let centroid = Point::from(sum / f64::max(count, 1.0));
     let at = |i: &u32| {
         let p = cloud.points.get(*i as usize)?;
-        let (mut sum, mut squares, mut n) = (Vector::zeros(), Matrix3::zeros(), 0.0);
+        let (mut sum, mut square, mut mixed, mut n) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
         grid.within(p, radius, |j, _| {
-            let d = cloud.points[j as usize] - p;
-            sum += d;
-            squares += d * d.transpose();
+            let d: [f64; 3] = (cloud.points[j as usize] - p).into();
+            for k in 0..3 {
+                sum[k] += d[k];
+                square[k] += d[k] * d[k];
+                mixed[k] += d[(k + 1) % 3] * d[(k + 2) % 3];
+            }
             n += 1.0;
         });
         if n < 6.0 {
             return None;
         }
-        let normal = smallest_axis(&(squares / n - sum * sum.transpose() / (n * n)))?;
+        let mean = sum.map(|s| s / n);
+        let covariance = Matrix3::from_fn(|i, j| {
+            let product = if i == j { square[i] } else { mixed[3 - i - j] };
+            product / n - mean[i] * mean[j]
+        });
+        let normal = smallest_axis(&covariance)?;
         let outward = cloud.viewpoint.map_or_else(|| p - centroid, |eye| eye - p);
         Some(if normal.dot(&outward) < 0.0 { -normal } else { normal })
     };

@@ -226,7 +226,8 @@ impl Normalised {
         let mut intrusions = Vec::new();
         self.terms.deepest_on_rays(&h.parameters, FINE_RAYS, true, &mut intrusions);
         let through = intrusions.iter().filter(|x| is_deep(x)).count();
-        let looked = self.terms.free.len().min(FINE_RAYS) + self.terms.before.len().min(FINE_RAYS);
+        let looked =
+            self.terms.free.len().min(FINE_RAYS) + self.terms.before.len().min(FINE_RAYS / 2);
         within as f64 > HOLLOW * self.points.len() as f64
             || through as f64 > CROSSED * looked as f64
     }

@@ -186,14 +186,14 @@ impl Terms {
     ) {
         found.clear();
         let Some(viewpoint) = self.viewpoint else { return };
-        let mut look = |ends: &[Vector]| {
+        let mut look = |ends: &[Vector], rays: usize| {
             let taken = ends.len().min(rays);
             let ends = (0..taken).map(|i| &ends[i * ends.len() / taken]);
             found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
         };
-        look(&self.free);
+        look(&self.free, rays);
         if own {
-            look(&self.before);
+            look(&self.before, rays / 2);
         }
     }
 }

@@ -92,7 +92,13 @@ pub(super) fn judge(candidate: &Candidate, local: &Local, jaw: &Jaw) -> Option<J
     let tip = jaw.tip_beyond_tcp;
     let half = 0.5 * candidate.width;
     let mut sides = [Side::default(); 2];
+    let origin = candidate.pose.translation.vector;
+    let reach = (half + TOUCH).hypot(0.525 * jaw.pad_width).hypot(tip.abs() + jaw.pad_length);
     for spot in &local.spots {
+        // most places are too far away to be touched
+        if (spot.at.coords - origin).norm_squared() > reach * reach {
+            continue;
+        }
         let q = inverse * spot.at;
         let (y, z) = (q.y / (0.5 * jaw.pad_width), (tip - q.z) / jaw.pad_length);
         if y.abs() > 1.05 || !(-0.05..=1.05).contains(&z) {
