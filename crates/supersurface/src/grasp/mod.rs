@@ -10,6 +10,7 @@ mod plan;
 mod proposals;
 mod quality;
 mod section;
+mod shell;
 mod sight;
 mod strip;
 mod suction;

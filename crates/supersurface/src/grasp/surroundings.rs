@@ -3,6 +3,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 
+use super::shell::shell;
 use super::sight::Sight;
 use crate::cloud::{PointCloud, VoxelGrid, normals};
 use crate::fit::Fit;
@@ -16,6 +17,8 @@ const SPACING: f64 = 0.003;
 const COARSE: f64 = 0.005;
 /// Most hidden places under a seen one, at twice the spacing: what is higher than 2 m is no object.
 const TALLEST: u32 = 200;
+/// How deep under a fitted surface rays must pass to disprove it, in metres.
+const SKIN: f64 = 0.003;
 /// Radius in which a normal is taken.
 const NORMAL_RADIUS: f64 = 0.009;
 /// A fit decides about hidden sides up to this median residual, and from this share of inliers.
@@ -78,7 +81,7 @@ impl<'a> Surroundings<'a> {
     /// The object of an index; `None` for one without points.
     pub(super) fn local(&self, object: usize, fit: Option<&Fit>) -> Option<Local> {
         let indices = self.segmentation.objects.get(object)?;
-        let thin: Vec<u32> = thinned(self.cloud, indices, SPACING);
+        let thin: Vec<u32> = thinned(self.cloud, indices, self.spacing(indices));
         let inward = self.frame.inverse();
         let mut spots: Vec<Spot> = Vec::with_capacity(2 * thin.len());
         for (i, n) in thin.iter().zip(normals(self.cloud, &thin, NORMAL_RADIUS)) {
@@ -122,6 +125,16 @@ impl<'a> Surroundings<'a> {
         })
     }
 
+    /// Large objects are looked at more coarsely.
+    fn spacing(&self, indices: &[u32]) -> f64 {
+        let points = indices.iter().step_by(16).filter_map(|i| get(self.cloud, *i));
+        let bounds = points.fold(None, |b: Option<(Point, Point)>, p| {
+            Some(b.map_or((p, p), |(l, h)| (l.inf(&p), h.sup(&p))))
+        });
+        let size = bounds.map_or(0.0, |(low, high)| (high - low).norm());
+        (size / 70.0).clamp(SPACING, 2.0 * SPACING)
+    }
+
     fn is_free(&self, at: &Point) -> bool {
         self.sight.as_ref().is_some_and(|s| s.is_free(&(self.frame * at)))
     }
@@ -133,44 +146,19 @@ impl<'a> Surroundings<'a> {
         let shape = surface.shape();
         let seen = spots.len();
         let size = (high - low).norm();
-        let half = Vector::from(shape.half_extents());
-        // a lattice on the box of the body, each point pulled on to the surface along the gradient
-        let step = (half.amax() / 12.0).max(SPACING);
-        let count = half.map(|h| (2.0 * h / step).ceil().clamp(2.0, 40.0) as i32);
-        for i in 0..=count.x {
-            for j in 0..=count.y {
-                for k in 0..=count.z {
-                    let share = Vector::new(
-                        f64::from(i) / f64::from(count.x),
-                        f64::from(j) / f64::from(count.y),
-                        f64::from(k) / f64::from(count.z),
-                    );
-                    let mut p =
-                        Point::from(half.component_mul(&(share * 2.0 - Vector::repeat(1.0))));
-                    let first = shape.first_order_distance(&p);
-                    if first.is_nan() || first.abs() > 0.75 * step {
-                        continue;
-                    }
-                    for _ in 0..2 {
-                        let gradient = shape.gradient(&p);
-                        let square = gradient.norm_squared();
-                        if square > 0.0 {
-                            p -= gradient * ((shape.gauge(&p) - 1.0) / square);
-                        }
-                    }
-                    let normal = shape.gradient(&p);
-                    let at = inward * (surface.pose() * p);
-                    if at.coords.iter().any(|v| !v.is_finite()) || (at - low).norm() > 3.0 * size {
-                        continue;
-                    }
-                    if (self.has_table && at.z < 0.0) || self.is_free(&at) {
-                        continue;
-                    }
-                    let normal = inward * (surface.pose() * normal);
-                    let normal = normal.try_normalize(0.0).unwrap_or_default();
-                    spots.push(Spot { at, normal, seen: false });
-                }
+        let step = (Vector::from(shape.half_extents()).amax() / 12.0).max(SPACING);
+        for p in shell(shape, step) {
+            let at = inward * (surface.pose() * p);
+            if at.coords.iter().any(|v| !v.is_finite()) || (at - low).norm() > 3.0 * size {
+                continue;
             }
+            let normal = inward * (surface.pose() * shape.gradient(&p));
+            let normal = normal.try_normalize(0.0).unwrap_or_default();
+            // looked at a little inside, as a body a millimetre too wide would be seen through
+            if (self.has_table && at.z < 0.0) || self.is_free(&(at - normal * SKIN)) {
+                continue;
+            }
+            spots.push(Spot { at, normal, seen: false });
         }
         drop_near(spots, seen, SPACING);
     }
