@@ -23,8 +23,8 @@ const FINE: usize = 600;
 const MIDDLE_RAYS: usize = 24;
 const FINE_RAYS: usize = 48;
 /// How many starts are ranked, and how many of these are refined.
-const SHORTLIST: usize = 10;
-const KEPT: usize = 4;
+const SHORTLIST: usize = 8;
+const KEPT: usize = 3;
 /// Share of points deep inside a convex body from which it may be hollow.
 const HOLLOW: f64 = 0.02;
 /// Share of the lines of sight through a convex body from which it may be hollow.

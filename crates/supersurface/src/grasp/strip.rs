@@ -22,6 +22,7 @@ const UNDER: f32 = 0.001;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turned {
     pub(super) x: f32,
+    y: f32,
     pub(super) z: f32,
     /// Cosine between its normal and the closing axis.
     pub(super) cosine: f32,
@@ -101,39 +102,31 @@ impl Strips {
     pub(super) fn turn(&mut self, rotation: &Rotation3<f64>, width: f32) {
         let [x, y, z]: [[f32; 3]; 3] = rotation.matrix().cast().into();
         let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let (mut across, mut along) =
-            ([f32::INFINITY, f32::NEG_INFINITY], [f32::INFINITY, f32::NEG_INFINITY]);
-        for p in &self.places {
-            let (qx, qy) = (dot(&x, &p.at), dot(&y, &p.at));
-            across = [across[0].min(qx), across[1].max(qx)];
-            along = [along[0].min(qy), along[1].max(qy)];
-        }
-        let (rows, bins) = (Axis::new(along, width / ROWS as f32), Axis::new(across, BIN));
-        (self.rows, self.bins) = (rows, bins);
+        let none = [f32::INFINITY, f32::NEG_INFINITY];
+        let (mut across, mut along) = (none, none);
         self.turned.clear();
         self.turned.extend(self.places.iter().map(|p| {
             let (qx, qy) = (dot(&x, &p.at), dot(&y, &p.at));
-            Turned {
-                x: qx,
-                z: dot(&z, &p.at),
-                cosine: dot(&x, &p.normal),
-                evidence: p.evidence,
-                seen: p.seen,
-                cell: (rows.cell_of(qy) * bins.cells + bins.cell_of(qx)) as u32,
-            }
+            across = [across[0].min(qx), across[1].max(qx)];
+            along = [along[0].min(qy), along[1].max(qy)];
+            let (z, cosine) = (dot(&z, &p.at), dot(&x, &p.normal));
+            Turned { x: qx, y: qy, z, cosine, evidence: p.evidence, seen: p.seen, cell: 0 }
         }));
+        self.rows = Axis::new(along, width / ROWS as f32);
+        self.bins = Axis::new(across, BIN);
         self.sort();
     }
 
     fn sort(&mut self) {
-        let Self { turned, sorted, starts, heights, .. } = self;
-        let cells = self.rows.cells * self.bins.cells;
+        let Self { turned, sorted, starts, heights, rows, bins, .. } = self;
+        let cells = rows.cells * bins.cells;
         starts.clear();
         starts.resize(cells + 1, 0);
         heights.clear();
         heights.resize(cells, f32::INFINITY);
-        for t in turned.iter() {
-            let k = t.cell as usize;
+        for t in turned.iter_mut() {
+            let k = rows.cell_of(t.y) * bins.cells + bins.cell_of(t.x);
+            t.cell = k as u32;
             starts[k + 1] += 1;
             heights[k] = heights[k].min(t.z);
         }
