@@ -44,7 +44,7 @@ pub(crate) struct GraspArgs {
     /// Units of the depth image a metre: 1000 for millimetres.
     #[arg(long, value_name = "UNITS")]
     pub(crate) depth_scale: Option<f64>,
-    /// Lens distortion k1,k2,p1,p2,k3,k4,k5,k6 (the last may be left out), with --intrinsics.
+    /// Lens distortion k1,k2,p1,p2,k3,k4,k5,k6 (at most 8; the last may be left out), with --intrinsics.
     #[arg(
         long,
         value_name = "D",
@@ -67,8 +67,9 @@ pub(crate) struct GraspArgs {
         allow_hyphen_values = true
     )]
     pub(crate) camera_pose: Option<Vec<f64>>,
-    /// Where the sensor stood, in the cloud's frame and metres; `none` for a cloud seen from all around.
-    /// The default is the origin of the cloud's frame.
+    /// Where the sensor stood, in the cloud's frame and metres; `none` for an object seen from all around
+    /// (the table is then still looked for as if from the origin). The default is the origin of the cloud's
+    /// frame.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) viewpoint: Option<String>,
     /// The cloud is one object already: look for no table.
@@ -107,8 +108,8 @@ pub(crate) struct HowArgs {
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
     /// Number of threads; results do not depend on it.
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// Where results go. Everything but results goes to standard error.
@@ -123,7 +124,7 @@ pub(crate) struct OutputArgs {
     /// Write the object of each point as an int32 .npy: 0 background, -1 unassigned, k object k.
     #[arg(long, value_name = "FILE")]
     pub(crate) labels: Option<PathBuf>,
-    /// Write all grasps as JSON, best first.
+    /// Write the grasps of all objects, up to 20 of each, as JSON, best first.
     #[arg(long, value_name = "FILE")]
     pub(crate) grasps: Option<PathBuf>,
     /// Draw the cloud, the surfaces and the best grasps.

@@ -24,7 +24,11 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
         cloud = cloud.scaled(factor);
     }
     if let Some(hint) = unit_hint(&cloud) {
-        warnings.push(format!("this looks like {hint}: pass --units {}", hint.sign()));
+        warnings.push(if factor == 1.0 {
+            format!("this looks like {hint}: pass --units {}", hint.sign())
+        } else {
+            "the scene is of an unlikely size: check --units".to_owned()
+        });
     }
     if let Some(text) = &args.viewpoint {
         cloud.viewpoint = viewpoint(text)?;
@@ -62,7 +66,12 @@ fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
         }
         return Ok(Some(camera));
     }
-    let Some(numbers) = &args.intrinsics else { return Ok(None) };
+    let Some(numbers) = &args.intrinsics else {
+        return match args.depth_scale {
+            Some(_) => Err(Failure::usage("--depth-scale needs --camera or --intrinsics")),
+            None => Ok(None),
+        };
+    };
     let [fx, fy, cx, cy] = numbers[..] else {
         let problem =
             format!("--intrinsics needs FX,FY,CX,CY; {} numbers were given", numbers.len());
@@ -72,7 +81,11 @@ fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
         return Err(Failure::usage("--intrinsics needs --depth-scale (1000 for millimetres)"));
     };
     let mut distortion = [0.0; 8];
-    for (to, from) in distortion.iter_mut().zip(args.distortion.iter().flatten()) {
+    let given = args.distortion.as_deref().unwrap_or_default();
+    if given.len() > distortion.len() || given.iter().any(|v| !v.is_finite()) {
+        return Err(Failure::usage("--distortion needs at most 8 finite numbers"));
+    }
+    for (to, from) in distortion.iter_mut().zip(given) {
         *to = *from;
     }
     let (focal, centre) = ([fx, fy], [cx, cy]);

@@ -44,9 +44,8 @@ impl Run<'_> {
         let source = match source() {
             Ok(source) => source,
             Err(failure) => {
-                let times = progress.finish();
-                self.leave_nothing(failure.message(), None, &gripper, times)?;
-                return Err(failure);
+                let left = self.leave_nothing(failure.message(), None, &gripper, progress.finish());
+                return Err(also(left, failure, &progress));
             }
         };
         for warning in &source.warnings {
@@ -68,8 +67,9 @@ impl Run<'_> {
                     _ => "",
                 };
                 let message = format!("{}: {error}{mend}", self.name);
-                self.leave_nothing(&message, Some(&source), &gripper, progress.finish())?;
-                Err(Failure::nothing(message))
+                let times = progress.finish();
+                let left = self.leave_nothing(&message, Some(&source), &gripper, times);
+                Err(also(left, Failure::nothing(message), &progress))
             }
         }
     }
@@ -113,8 +113,14 @@ impl Run<'_> {
         if let Some(path) = &self.output.grasps {
             let planning = times.iter().filter(|(name, _)| *name != "draw" && *name != "look");
             let seconds = planning.map(|(_, s)| s).sum();
-            supersurface_io::write_grasps(path, &report.objects, gripper, seconds)
-                .map_err(Failure::output)?;
+            supersurface_io::write_grasps(
+                path,
+                &report.objects,
+                gripper,
+                frame_id(source),
+                seconds,
+            )
+            .map_err(Failure::output)?;
         }
         let text = if self.output.json {
             report_json(report, &self.head(Some(source), gripper, times)) + "\n"
@@ -128,7 +134,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What a run without results leaves: labels and grasps of nothing, and a report that says why.
+    /// What a run without results leaves: labels and grasps of nothing, a picture of the cloud, and a report that
+    /// says why.
     fn leave_nothing(
         &self,
         message: &str,
@@ -142,8 +149,20 @@ impl Run<'_> {
             supersurface_io::write_labels(path, &labels).map_err(Failure::output)?;
         }
         if let Some(path) = &self.output.grasps {
-            supersurface_io::write_grasps(path, &[], gripper, times.iter().map(|t| t.1).sum())
-                .map_err(Failure::output)?;
+            let seconds = times.iter().map(|t| t.1).sum();
+            supersurface_io::write_grasps(
+                path,
+                &[],
+                gripper,
+                source.map_or("camera", frame_id),
+                seconds,
+            )
+            .map_err(Failure::output)?;
+        }
+        if let (Some(path), Some(source)) = (&self.output.png, source) {
+            let image = show::picture(&source.cloud, &Report::default(), gripper);
+            let size = [image.width, image.height];
+            supersurface_io::write_png(path, size, &image.pixels).map_err(Failure::output)?;
         }
         if self.output.json {
             print(&(failure_json(message, &self.head(source, gripper, times)) + "\n"))?;
@@ -152,11 +171,21 @@ impl Run<'_> {
     }
 }
 
-fn threads(count: Option<usize>) -> Result<(), Failure> {
-    let Some(count) = count else { return Ok(()) };
-    if count == 0 {
-        return Err(Failure::usage("--threads must be at least 1"));
+/// The failure of a run, after what else failed when it was written down.
+fn also(left: Result<(), Failure>, failure: Failure, progress: &Progress) -> Failure {
+    if let Err(other) = left {
+        progress.warn(other.message());
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
+    failure
+}
+
+/// The frame of a grasp file: that of the cloud, or the one into which the camera's pose leads.
+fn frame_id(source: &Source) -> &'static str {
+    if source.frame == "cloud" { "camera" } else { "world" }
+}
+
+fn threads(count: Option<u16>) -> Result<(), Failure> {
+    let Some(count) = count else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.into());
     pool.build_global().map_err(Failure::usage)
 }

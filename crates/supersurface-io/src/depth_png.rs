@@ -24,6 +24,10 @@ pub(crate) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Read, Fault> 
         let mend = "a depth image needs intrinsics: pass --camera FILE.json, or --intrinsics and --depth-scale";
         return Err(Fault::new("camera", mend));
     };
+    if let Some(field) = &options.instances {
+        let problem = format!("a depth image has no field {field:?}: pass --mask IMAGE instead");
+        return Err(Fault::new("instances", problem));
+    }
     let grey = decode(bytes)?;
     if grey.bits != 16 {
         let problem = format!("{} bits a pixel: depth needs a 16-bit image", grey.bits);

@@ -1,4 +1,4 @@
-//! Grasps as JSON: all of a scene in one list, best first, in the frame of the cloud (`camera`).
+//! Grasps as JSON: all of a scene in one list, best first, in the frame that `frame_id` names.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::write::write_bytes;
 struct File<'a> {
     format: &'static str,
     version: u32,
-    frame_id: &'static str,
+    frame_id: &'a str,
     gripper: &'a str,
     timing: Timing,
     grasps: Vec<Row>,
@@ -46,12 +46,14 @@ struct Refused {
     reason: String,
 }
 
-/// Writes the grasps of all objects; a file with none of them where there are no objects. `seconds` is what
+/// Writes the grasps of all objects; a file with none of them where there are no objects. `frame_id` names the
+/// frame of their poses (`camera` for that of the cloud, else `world`), `seconds` is what
 /// reading, segmenting, fitting and planning took.
 pub fn write_grasps(
     file: &Path,
     objects: &[Object],
     gripper: &Gripper,
+    frame_id: &str,
     seconds: f64,
 ) -> Result<(), WriteError> {
     let kind = match gripper.kind {
@@ -69,7 +71,7 @@ pub fn write_grasps(
     let file_content = File {
         format: "grasps",
         version: 1,
-        frame_id: "camera",
+        frame_id,
         gripper: &gripper.name,
         timing: Timing { total_s: seconds },
         grasps,

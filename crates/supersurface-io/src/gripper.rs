@@ -135,14 +135,19 @@ const NOT_NEGATIVE: &str = "zero or positive, and finite";
 
 impl File {
     fn gripper(&self) -> Result<Gripper, InvalidGripper> {
-        self.check(self.format == "grasp-gripper", "format", f64::NAN, "\"grasp-gripper\"")?;
+        self.check(
+            self.format == "grasp-gripper",
+            "format",
+            format!("{:?}", self.format),
+            "\"grasp-gripper\"",
+        )?;
         self.check(self.version == 1, "version", f64::from(self.version), "1")?;
         let kind = match (self.kind.as_str(), &self.jaw, &self.cup) {
             ("parallel", Some(jaw), _) => Kind::Jaw(self.jaw(jaw)?),
             ("suction", _, Some(cup)) => Kind::Suction(self.cup(cup)?),
             _ => {
                 let range = "\"parallel\" with a [jaw] or \"suction\" with a [cup]";
-                return Err(self.error("kind", f64::NAN, range));
+                return Err(self.error("kind", format!("{:?}", self.kind), range));
             }
         };
         self.positive("approach_distance", self.motion.approach_distance)?;
@@ -182,7 +187,12 @@ impl File {
         self.check(below, "min_opening", t.min_opening, "less than max_opening")?;
         let rising = t.tip_arc.windows(2).all(|w| w[0][0] < w[1][0]);
         let finite = t.tip_arc.iter().flatten().all(|v| v.is_finite());
-        self.check(rising && finite, "tip_arc", f64::NAN, "[opening, dz] pairs in rising order")?;
+        self.check(
+            rising && finite,
+            "tip_arc",
+            "not rising",
+            "[opening, dz] pairs in rising order",
+        )?;
         let finger = self.boxes(&self.finger, "finger")?;
         self.check(!finger.is_empty(), "finger", 0.0, "at least one box")?;
         let outer_width_closed = match (t.inside, t.outer_width_closed) {
@@ -194,7 +204,7 @@ impl File {
             (true, None) => {
                 return Err(self.error(
                     "outer_width_closed",
-                    f64::NAN,
+                    "missing",
                     "given where inside = true",
                 ));
             }
@@ -273,7 +283,7 @@ impl File {
             && rotation.determinant() > 0.0
             && m[3] == [0.0, 0.0, 0.0, 1.0]
             && (0..3).all(|i| m[i][3].is_finite());
-        self.check(rigid, "T_tcp_mount", f64::NAN, "a rigid pose, row by row")?;
+        self.check(rigid, "T_tcp_mount", "not rigid", "a rigid pose, row by row")?;
         let turn =
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
         Ok(Pose::from_parts(Vector::new(m[0][3], m[1][3], m[2][3]).into(), turn))
@@ -287,13 +297,18 @@ impl File {
         &self,
         ok: bool,
         what: &'static str,
-        value: f64,
+        value: impl ToString,
         range: &'static str,
     ) -> Result<(), InvalidGripper> {
         if ok { Ok(()) } else { Err(self.error(what, value, range)) }
     }
 
-    fn error(&self, what: &'static str, value: f64, range: &'static str) -> InvalidGripper {
-        InvalidGripper { name: self.name.clone(), what, value, range }
+    fn error(
+        &self,
+        what: &'static str,
+        value: impl ToString,
+        range: &'static str,
+    ) -> InvalidGripper {
+        InvalidGripper { name: self.name.clone(), what, value: value.to_string(), range }
     }
 }

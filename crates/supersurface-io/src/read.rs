@@ -86,6 +86,9 @@ pub fn parse(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Read, Re
             return Err(ReadError::Unsupported { file: name.to_owned(), format, mend });
         }
     };
+    if options.camera.is_some() && format != Format::DepthPng {
+        read.warnings.push("the camera is for depth images: it was not used".to_owned());
+    }
     read.cloud.viewpoint = Some(Point::origin());
     Ok(read)
 }
@@ -167,5 +170,6 @@ pub(crate) fn no_field<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -
 
 /// A label as a number of an instance; what is no number of one is background.
 pub(crate) fn label(value: f64) -> u32 {
-    if value >= 0.0 && value <= f64::from(u32::MAX) { value as u32 } else { 0 }
+    let whole = value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0;
+    if whole { value as u32 } else { 0 }
 }

@@ -44,7 +44,7 @@ pub struct Object {
 }
 
 /// What was found in a cloud.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Report {
     /// The table and the points of each object.

@@ -144,7 +144,7 @@ fn given_objects_are_taken_and_labels_are_not_taken_unasked() {
     let mut ply = String::from("ply\nformat ascii 1.0\n");
     let rows: Vec<(usize, &supersurface::Point)> =
         cloud.points.iter().enumerate().filter(|(_, p)| p.x.is_finite()).collect();
-    let _ = write!(ply, "element vertex {}\n", rows.len());
+    let _ = writeln!(ply, "element vertex {}", rows.len());
     ply += "property float x\nproperty float y\nproperty float z\nproperty int thing\nend_header\n";
     for (i, p) in rows {
         let _ = writeln!(ply, "{} {} {} {}", p.x, p.y, p.z, only(seen.labels[i]));

@@ -156,11 +156,10 @@ impl Raw {
             let scalar = scalar(kind, size).ok_or_else(|| {
                 Fault::new("TYPE", format!("field {name} has TYPE {kind} with SIZE {size}"))
             })?;
-            if count > MOST_ROW || row > MOST_ROW {
-                return Err(Fault::new(
-                    "COUNT",
-                    format!("field {name} has COUNT {count}: too many"),
-                ));
+            if count == 0 || count > MOST_ROW || row > MOST_ROW {
+                let problem =
+                    format!("field {name} has COUNT {count}: 1 to {MOST_ROW} are possible");
+                return Err(Fault::new("COUNT", problem));
             }
             fields.push(Field { name, scalar, count, offset: row, column: columns });
             row += scalar.size() * count;

@@ -88,6 +88,9 @@ impl PointCloud {
             p.coords *= factor;
         }
         self.viewpoint = self.viewpoint.map(|p| Point::from(p.coords * factor));
+        if let Some(world) = &mut self.world {
+            world.translation.vector *= factor;
+        }
         self
     }
 }

@@ -52,10 +52,12 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
         .map(|c| (steps[c], picture.point(c, 3.0 * depths[1])));
     let mut found: Vec<(u16, Point)> = seen.chain(gaps).collect();
     found.sort_by_key(|f| f.0);
-    let kept = found.len().min(MOST);
+    if found.len() <= MOST {
+        return found.into_iter().map(|f| f.1).collect();
+    }
     // squares: most of what a body could wrongly grow into lies next to what is seen of it
-    let at = |i: usize| i * i * found.len() / (kept * kept);
-    (0..kept).map(|i| found[at(i)].1).collect()
+    let at = |i: usize| i * i * found.len() / (MOST * MOST);
+    (0..MOST).map(|i| found[at(i)].1).collect()
 }
 
 /// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with half its size to each

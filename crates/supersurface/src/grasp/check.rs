@@ -1,6 +1,8 @@
 //! Does the gripper meet anything on its way in: its boxes, swept along the approach, against the table,
 //! neighbours, the object itself and what no ray passed through.
 
+use nalgebra::Translation3;
+
 use super::gripper::{Boxed, Gripper, Kind};
 use super::surroundings::Local;
 use crate::{Point, Pose, Vector};
@@ -11,8 +13,6 @@ const TABLE_MARGIN: f64 = 0.0015;
 const POINT_MARGIN: f64 = 0.001;
 /// Points of the object or its hidden side that may lie within the boxes: strays.
 const ALLOWED: usize = 2;
-/// Heights over the grasp at which the boxes are looked at while they come in.
-const SWEEP: [f64; 4] = [0.0, 0.025, 0.05, 0.08];
 
 /// What a gripper runs into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,16 +65,23 @@ pub(super) fn meets_table(boxes: &[Boxed], pose: &Pose, local: &Local) -> bool {
 }
 
 /// The first obstruction of a gripper with these boxes at a pose in the table's frame.
-pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option<Obstruction> {
-    if meets_table(boxes, pose, local) {
+/// They come in along the approach from `way` metres before it.
+pub(super) fn obstruction(
+    boxes: &[Boxed],
+    pose: &Pose,
+    way: f64,
+    local: &Local,
+) -> Option<Obstruction> {
+    let before = pose * Translation3::new(0.0, 0.0, -way);
+    if meets_table(boxes, pose, local) || meets_table(boxes, &before, local) {
         return Some(Obstruction::Table);
     }
     let inverse = pose.inverse();
     let radius =
         boxes.iter().map(|b| b.center.coords.norm() + 0.5 * b.size.norm()).fold(0.0, f64::max);
-    let reach = radius + SWEEP[SWEEP.len() - 1];
+    let reach = radius + way;
     let origin = pose.translation.vector;
-    let (low, high) = swept(boxes);
+    let (low, high) = swept(boxes, way);
     let meets = |p: &Point| {
         if (p.coords - origin).norm_squared() > reach * reach {
             return false;
@@ -86,9 +93,7 @@ pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option
         boxes.iter().any(|b| {
             let half = b.size * 0.5 + Vector::repeat(POINT_MARGIN);
             let d = q - b.center;
-            d.x.abs() < half.x
-                && d.y.abs() < half.y
-                && SWEEP.iter().any(|s| (d.z + s).abs() < half.z)
+            d.x.abs() < half.x && d.y.abs() < half.y && d.z < half.z && d.z > -half.z - way
         })
     };
     let mut strays = 0;
@@ -113,11 +118,11 @@ pub(super) fn obstruction(boxes: &[Boxed], pose: &Pose, local: &Local) -> Option
 }
 
 /// The box around all boxes on their way in.
-fn swept(boxes: &[Boxed]) -> (Point, Point) {
+fn swept(boxes: &[Boxed], way: f64) -> (Point, Point) {
     let none = (Point::from([f64::INFINITY; 3]), Point::from([f64::NEG_INFINITY; 3]));
     boxes.iter().fold(none, |(low, high), b| {
         let half = b.size * 0.5 + Vector::repeat(POINT_MARGIN);
-        let back = Vector::z() * SWEEP[SWEEP.len() - 1];
+        let back = Vector::z() * way;
         (low.inf(&(b.center - half - back)), high.sup(&(b.center + half)))
     })
 }

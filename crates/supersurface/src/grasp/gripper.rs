@@ -10,8 +10,8 @@ pub struct InvalidGripper {
     pub name: String,
     /// The quantity, named as in the file.
     pub what: &'static str,
-    /// The value that was given.
-    pub value: f64,
+    /// The value that was given, in words.
+    pub value: String,
     /// The range in words.
     pub range: &'static str,
 }
@@ -34,7 +34,7 @@ pub struct Jaw {
     pub max_opening: f64,
     /// Least distance between the pads.
     pub min_opening: f64,
-    /// Free space wanted on each side before closing.
+    /// Free space wanted on each side before closing; half of it is accepted where the jaw has no more.
     pub clearance: f64,
     /// Pad size along z.
     pub pad_length: f64,

@@ -122,7 +122,8 @@ fn by_jaw(
         let width = if candidate.inside { 0.0 } else { candidate.width };
         let closed = boxes(gripper, (width - NARROWER).max(0.0), width);
         let met_table = !candidate.inside && meets_table(&closed, &grasp.pose, local);
-        let open = obstruction(&boxes(gripper, gap, width), &grasp.pose, local);
+        let way = gripper.approach_distance;
+        let open = obstruction(&boxes(gripper, gap, width), &grasp.pose, way, local);
         match open.or(met_table.then_some(Obstruction::Table)) {
             None => out.push(grasp),
             Some(Obstruction::Table) => met.table += 1,
@@ -164,6 +165,9 @@ fn by_suction(
 ) -> Result<Vec<Grasp>, Refusal> {
     let volume = surface.map_or_else(|| box_volume(local), |s| s.shape().volume());
     let (seals, miss) = seals(local, surface, cup, volume);
+    if seals.is_empty() && miss.heavy > 0 {
+        return Err(Refusal::TooHeavy { lip_radius: cup.lip_radius });
+    }
     if seals.is_empty() {
         return Err(Refusal::NoSeal {
             radius: cup.lip_radius,
@@ -181,7 +185,7 @@ fn by_suction(
         if out.iter().any(|other| same(&other.pose, &seal.pose)) {
             continue;
         }
-        match obstruction(&parts, &seal.pose, local) {
+        match obstruction(&parts, &seal.pose, gripper.approach_distance, local) {
             None => out.push(Grasp {
                 pose: seal.pose,
                 opening: 0.0,

@@ -140,7 +140,8 @@ impl Hand<'_> {
         });
         let along = self.approach.cross(&self.closing);
         let back = surface.support_point(&-self.approach);
-        let cone = 1.0 / jaw.mu.hypot(1.0);
+        let mu = if self.row.inside { jaw.outside_mu } else { jaw.mu };
+        let cone = 1.0 / mu.hypot(1.0);
         // an inside grasp ends where the wider part of the fingers meets the rim
         let reach = if self.row.inside { jaw.pad_length } else { jaw.finger_depth } - ROOM;
         for deeper in SHIFTS {

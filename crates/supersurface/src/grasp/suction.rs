@@ -25,6 +25,8 @@ const DENSITY: f64 = 600.0;
 const SHAKING: f64 = 1.6;
 /// Worth of a place that only the fit shows.
 const HIDDEN: f64 = 0.5;
+/// Load, as a share of what the cup holds, beyond which no error of the guessed weight helps.
+const HOPELESS: f64 = 3.0;
 /// Places that are tried.
 const TRIED: usize = 350;
 
@@ -43,6 +45,8 @@ pub(super) struct Seal {
 pub(super) struct NearMiss {
     /// Least root mean square gap under the whole lip, in metres; infinite where the lip never lies on matter.
     pub(super) gap: f64,
+    /// Places where the cup seals but the object's weight would tear it off.
+    pub(super) heavy: usize,
 }
 
 /// Places where the cup seals, best first, and the nearest miss. `volume` is the object's, in m³; `surface` a
@@ -55,7 +59,7 @@ pub(super) fn seals(
 ) -> (Vec<Seal>, NearMiss) {
     let seen: Vec<usize> = (0..local.spots.len()).filter(|i| local.spots[*i].seen).collect();
     let places: Vec<Point> = seen.iter().map(|i| local.spots[*i].at).collect();
-    let mut miss = NearMiss { gap: f64::INFINITY };
+    let mut miss = NearMiss { gap: f64::INFINITY, heavy: 0 };
     let radius = 1.15 * cup.lip_radius;
     let Some(grid) = VoxelGrid::new(&places, 0..places.len() as u32, 0.5 * radius) else {
         return (Vec::new(), miss);
@@ -76,7 +80,7 @@ pub(super) fn seals(
         }
         look(&at, &mut near);
         out.extend(if near.is_empty() {
-            modelled(local, cup, volume, &row, &pose)
+            modelled(local, cup, volume, &row, &pose, &mut miss)
         } else {
             seal(local, cup, volume, (&at, &outward), &near, row.table, &mut miss)
         });
@@ -95,7 +99,14 @@ pub(super) fn seals(
 }
 
 /// A row on the hidden side, where the closed form has the say.
-fn modelled(local: &Local, cup: &Cup, volume: f64, row: &CupRow, pose: &Pose) -> Option<Seal> {
+fn modelled(
+    local: &Local,
+    cup: &Cup,
+    volume: f64,
+    row: &CupRow,
+    pose: &Pose,
+    miss: &mut NearMiss,
+) -> Option<Seal> {
     let lip = Point::from(pose.translation.vector);
     let sag = row.sag(cup.lip_radius);
     let sharpest = row.sections.iter().map(|s| s.curvature().unwrap_or(f64::INFINITY));
@@ -104,7 +115,10 @@ fn modelled(local: &Local, cup: &Cup, volume: f64, row: &CupRow, pose: &Pose) ->
     }
     let normal = pose.rotation * -Vector::z();
     let closed = (1.0 - sag / cup.lip_tolerance).clamp(0.0, 1.0);
-    let mut seal = carried(local, cup, volume, &lip, &normal, closed, row.table);
+    let Some(mut seal) = carried(local, cup, volume, &lip, &normal, closed, row.table) else {
+        miss.heavy += 1;
+        return None;
+    };
     seal.terms.push(("seen", 0.0));
     seal.score *= HIDDEN;
     Some(seal)
@@ -162,10 +176,12 @@ fn seal(
     }
     let lip = at + normal * mean.dot(&normal);
     let closed = (1.0 - gap / cup.lip_tolerance).clamp(0.0, 1.0);
-    Some(carried(local, cup, volume, &lip, &normal, closed, source))
+    let seal = carried(local, cup, volume, &lip, &normal, closed, source);
+    miss.heavy += usize::from(seal.is_none());
+    seal
 }
 
-/// What a cup that closes at a place can carry. `closed` says how well its lip lies there, in [0, 1].
+/// What a cup that closes at a place can carry; `None` where the object is far too heavy for it there. `closed` says how well its lip lies there, in [0, 1].
 fn carried(
     local: &Local,
     cup: &Cup,
@@ -174,7 +190,7 @@ fn carried(
     normal: &Vector,
     closed: f64,
     source: &'static str,
-) -> Seal {
+) -> Option<Seal> {
     let arm = local.centre - lip;
     let across = arm - normal * arm.dot(normal);
     let lever = across.norm();
@@ -186,6 +202,9 @@ fn carried(
     let peel = 0.5 * cup.lip_radius * (pull - weight * normal.z.max(0.0)).max(0.0);
     let shear = cup.mu * (pull - weight * normal.z.max(0.0)).max(0.0);
     let load = (weight * moment_arm / peel.max(1e-9)).max(weight * tilted / shear.max(1e-9));
+    if load > HOPELESS {
+        return None;
+    }
     let terms = vec![
         ("seal", closed),
         ("lever", 1.0 / (1.0 + (lever / 0.02) * (lever / 0.02))),
@@ -194,11 +213,11 @@ fn carried(
     ];
     let [seal, lever_term, load_term, approach] = [terms[0].1, terms[1].1, terms[2].1, terms[3].1];
     let score = (0.3 + 0.7 * load_term) * (0.45 * seal + 0.4 * lever_term + 0.15 * approach);
-    Seal {
+    Some(Seal {
         pose: Pose::from_parts(lip.coords.into(), upright_tool(&-normal)),
         score,
         terms,
         contact: (*lip, Direction::new_unchecked(*normal)),
         source,
-    }
+    })
 }

@@ -138,7 +138,8 @@ impl Turn<'_> {
     fn propose(&self, [from, to, y, tip]: [f32; 4]) -> Option<Ranked> {
         let jaw = self.jaw;
         let width = f64::from(to - from);
-        if width < LEAST_WIDTH || width + jaw.clearance > jaw.max_opening {
+        let least = LEAST_WIDTH.max(jaw.min_opening);
+        if width < least || width + jaw.clearance > jaw.max_opening {
             return None;
         }
         if self.meets_table([from, to, y, tip]) {

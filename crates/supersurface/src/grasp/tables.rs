@@ -3,10 +3,10 @@
 //! Superellipsoid: P1 to P4 for a jaw, S1 to S3 for a cup. Supertoroid: T1 to T4c and T5, T6. These are the
 //! paper's Tables 2 to 4 corrected and completed (FORMULAS §8.3). A row holds for a class of exponents (below,
 //! at, above 1) and of horizontal semi-axes (alike or not); near a border the rows of both neighbours are
-//! given, as no fit knows an exponent exactly.
+//! given where they hold still: contacts on the axes up to a little above 1, those between the axes from 1.
 //!
-//! Everything is in the shape's own frame. By the symmetry of the shapes each row stands for its mirror images
-//! too: any approach may be reversed.
+//! Everything is in the shape's own frame. A jaw's row stands for its mirror images too: its approach may be
+//! reversed.
 
 use super::section::{Section, Stationary};
 use crate::surface::Surface;
@@ -156,8 +156,7 @@ pub fn jaw_rows(surface: &Surface, bands: &Bands) -> Vec<JawRow> {
         }
     }
     if shape.ring.is_none() && shape.profile.below {
-        let edge =
-            Section { a: shape.a3, b: shape.axes[0].min(shape.axes[1]), ..shape.upright(1.0) };
+        let edge = Section { a: shape.a3, b: shape.narrowest(), epsilon: shape.epsilon1 };
         let curvature = edge.first().curvature;
         rows.push(JawRow {
             table: "P3",
@@ -178,17 +177,18 @@ pub fn cup_rows(surface: &Surface, bands: &Bands) -> Vec<CupRow> {
     let shape = Shape::new(surface, bands);
     let mut rows = Vec::new();
     if shape.ring.is_none() && shape.profile.below {
-        let towards = |k: usize| {
-            Profile::Vertex(Section { a: shape.a3, b: shape.axes[k], epsilon: shape.epsilon1 })
-        };
-        let narrow = usize::from(shape.axes[1] < shape.axes[0]);
-        rows.push(CupRow {
-            table: "S1",
-            contact: Point::from(Vector::z() * shape.a3),
-            normal: Vector::z_axis(),
-            sections: [towards(narrow), towards(1 - narrow)],
-            turning: false,
-        });
+        let towards =
+            |half: f64| Profile::Vertex(Section { a: shape.a3, b: half, epsilon: shape.epsilon1 });
+        let wide = shape.axes[0].max(shape.axes[1]);
+        for normal in [Vector::z_axis(), -Vector::z_axis()] {
+            rows.push(CupRow {
+                table: "S1",
+                contact: Point::from(normal.into_inner() * shape.a3),
+                normal,
+                sections: [towards(shape.narrowest()), towards(wide)],
+                turning: false,
+            });
+        }
     }
     for line in shape.lines() {
         shape.cup_rows(&line, &mut rows);
@@ -315,6 +315,12 @@ impl Shape {
         out
     }
 
+    /// Least half width of the cross-section: on an axis, or between the axes.
+    fn narrowest(&self) -> f64 {
+        let corner = self.cross(1.0).interior().map_or(f64::INFINITY, |c| c.radius());
+        self.axes[0].min(self.axes[1]).min(corner)
+    }
+
     /// The cross-section's stationary point on a line where the section is `scale` times as large.
     fn on(&self, line: &Line, scale: f64) -> Option<Stationary> {
         let section = self.cross(scale);
@@ -439,8 +445,10 @@ impl Shape {
                 push(table, d * outer, d, [cross, Profile::Vertex(side)]);
                 if self.ring.is_some() {
                     let top = Section { a: self.a3, b: half, epsilon: self.epsilon1 };
-                    let contact = d * (ring * half) + up * self.a3;
-                    push("T5", contact, up, [Profile::Vertex(top), Profile::Straight]);
+                    for up in [up, -up] {
+                        let contact = d * (ring * half) + up * self.a3;
+                        push("T5", contact, up, [Profile::Vertex(top), Profile::Straight]);
+                    }
                 }
             }
             if !self.profile.above {
@@ -449,20 +457,24 @@ impl Shape {
             if self.ring.is_some() {
                 // the flank at 45 degrees of the tube's parameter, above the sharp equator and under the ridge
                 let flank = self.upright(half).middle();
-                let contact = d * (ring * half + flank.point[0]) + up * flank.point[1];
                 let tube = Profile::Curved(flank.curvature.unwrap_or(f64::INFINITY));
-                push("T5", contact, d * self.a3 + up * half, [tube, cross]);
+                let around = self.around(line, ring + flank.point[0] / half);
+                for up in [up, -up] {
+                    let contact = d * (ring * half + flank.point[0]) + up * flank.point[1];
+                    push("T5", contact, d * self.a3 + up * half, [tube, around]);
+                }
             } else if let Some(corner) = self.upright(half).interior() {
                 for sign in [1.0, -1.0] {
                     let p = d * corner.point[0] + up * (sign * corner.point[1]);
                     let tube = Profile::Curved(corner.curvature.unwrap_or(f64::INFINITY));
-                    push("S3", p, p, [tube, cross]);
+                    push("S3", p, p, [tube, self.around(line, corner.point[0] / half)]);
                 }
             }
         }
     }
 
-    /// How the cross-section, `scale` times as large, falls away from a line.
+    /// How the cross-section, `scale` times as large, falls away from a line: at least as much as the surface does
+    /// that leans against it.
     fn around(&self, line: &Line, scale: f64) -> Profile {
         let Section { a, b, epsilon } = self.cross(scale);
         match line.at {

@@ -4,6 +4,9 @@ use crate::cloud::PointCloud;
 use crate::numeric::random::Stream;
 use crate::segment::{SegmentError, SegmentOptions, Segmentation, readings, table};
 
+/// Most objects of a scene: more labels are colours, normals or another field taken by mistake.
+const MOST_OBJECTS: usize = 1000;
+
 /// All readings as one object, without a support.
 pub fn segment_whole(cloud: &PointCloud) -> Result<Segmentation, SegmentError> {
     Ok(Segmentation { objects: vec![readings(cloud)?], ..Segmentation::default() })
@@ -25,7 +28,11 @@ pub fn segment_masks(
         return Err(SegmentError::NoLabels);
     }
     labelled.sort_by_key(label);
-    let objects = labelled.chunk_by(|a, b| label(a) == label(b)).map(<[u32]>::to_vec).collect();
+    let objects: Vec<Vec<u32>> =
+        labelled.chunk_by(|a, b| label(a) == label(b)).map(<[u32]>::to_vec).collect();
+    if objects.len() > MOST_OBJECTS {
+        return Err(SegmentError::TooManyLabels { found: objects.len(), most: MOST_OBJECTS });
+    }
     let mut random = Stream::new(options.seed, 0);
     let support = table::find(cloud, &background, &mut random).ok().map(|(support, _)| support);
     Ok(Segmentation {

@@ -170,6 +170,14 @@ pub enum SegmentError {
     /// No point has a label other than 0.
     #[error("the given labels name no object")]
     NoLabels,
+    /// More labels than a scene has objects.
+    #[error("the given labels name {found} objects, more than {most}: is this a segmentation?")]
+    TooManyLabels {
+        /// Number of labels.
+        found: usize,
+        /// Most labels.
+        most: usize,
+    },
 }
 
 /// Finite points without which nothing is tried.
