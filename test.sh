@@ -12,4 +12,4 @@ cargo clippy --workspace --all-targets --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 cargo check -p supersurface --no-default-features --locked
 cargo test --workspace --doc --locked
-cargo test --workspace --all-targets --locked
+cargo test --workspace --lib --bins --tests --locked

@@ -1,16 +1,18 @@
 //! From candidates to ranked grasps: propose, judge, check, and keep what is diverse.
 
+use nalgebra::UnitQuaternion;
+
 use super::check::{Obstruction, boxes, meets_table, obstruction};
 use super::gripper::{Cup, Gripper, Jaw, Kind};
 use super::hole::holes;
 use super::proposals::proposals;
 use super::quality::{Candidate, Judged, judge};
 use super::suction::seals;
-use super::surroundings::{Local, Surroundings};
+use super::surroundings::{Local, Surroundings, is_trusted};
 use super::sweep::{narrowest, sweep};
 use super::{Grasp, Refusal};
 use crate::fit::Fit;
-use crate::shape::Posed;
+use crate::shape::{Implicit, Posed, SupportMap};
 use crate::surface::Surface;
 use crate::{Direction, Point, Pose, Vector};
 
@@ -29,6 +31,12 @@ impl Default for GraspOptions {
     }
 }
 
+/// Share of inliers from which a fit is the whole object: no handle, no rim.
+const WHOLE: f64 = 0.985;
+/// Sine of the steepest closing direction.
+const STEEP: f64 = 0.8;
+/// Opening of the jaw, times this, that no error of a fit makes up for.
+const SURELY: f64 = 1.1;
 /// How much narrower than expected an object may turn out, in metres.
 const NARROWER: f64 = 0.006;
 /// Two grasps nearer than this are one: metres and radians.
@@ -46,6 +54,9 @@ pub fn plan(
     gripper: &Gripper,
     options: &GraspOptions,
 ) -> Result<Vec<Grasp>, Refusal> {
+    if let (Kind::Jaw(jaw), Some(fit)) = (&gripper.kind, fit) {
+        whole_is_too_wide(fit, around, jaw)?;
+    }
     let local =
         around.local(object, fit).filter(|l| l.spots.len() >= 12).ok_or(Refusal::NoPoints)?;
     let trusted = fit.filter(|_| local.trusted);
@@ -64,6 +75,31 @@ pub fn plan(
         }
     }
     Ok(found)
+}
+
+/// Refuses a convex body that explains all points and has no narrow side: no part of it can be held, and looking
+/// for one would be in vain.
+fn whole_is_too_wide(fit: &Fit, around: &Surroundings<'_>, jaw: &Jaw) -> Result<(), Refusal> {
+    if !fit.surface.is_convex() || fit.inlier_share() < WHOLE || !is_trusted(fit) {
+        return Ok(());
+    }
+    let width = |d: &Vector| (fit.surface.support_point(d) - fit.surface.support_point(&-d)).dot(d);
+    // closing directions that are nearly level, and the body's own axes among them
+    let lattice =
+        (0..24).flat_map(|k| (-2..=2).map(move |l| [f64::from(k) / 24.0, f64::from(l) / 5.0]));
+    let level = lattice.map(|[turn, slope]| {
+        let (s, c) = (std::f64::consts::PI * turn).sin_cos();
+        around.frame.rotation
+            * Vector::new(c, s, (std::f64::consts::PI * slope / 2.0).tan()).normalize()
+    });
+    let up = around.frame.rotation * Vector::z();
+    let axes = fit.surface.pose().rotation.to_rotation_matrix().into_inner();
+    let own = axes.column_iter().map(Vector::from).filter(|d| d.dot(&up).abs() < STEEP);
+    let needed = level.chain(own).map(|d| width(&d)).fold(f64::INFINITY, f64::min);
+    if needed > SURELY * jaw.max_opening {
+        return Err(Refusal::TooWide { needed, available: jaw.max_opening });
+    }
+    Ok(())
 }
 
 /// How often a candidate met what.
@@ -223,14 +259,13 @@ fn box_volume(local: &Local) -> f64 {
 fn canonical(pose: &Pose) -> Pose {
     let q = pose.rotation.into_inner();
     let q = if q.w < 0.0 { -q } else { q };
-    Pose::from_parts(pose.translation, nalgebra::UnitQuaternion::new_unchecked(q))
+    Pose::from_parts(pose.translation, UnitQuaternion::new_unchecked(q))
 }
 
 /// The same grasp, also when turned by half a turn about its approach.
 fn same(a: &Pose, b: &Pose) -> bool {
     let place = (a.translation.vector - b.translation.vector).norm();
     let turn = a.rotation.angle_to(&b.rotation);
-    let flipped =
-        a.rotation * nalgebra::UnitQuaternion::from_scaled_axis(Vector::z() * std::f64::consts::PI);
+    let flipped = a.rotation * UnitQuaternion::from_scaled_axis(Vector::z() * std::f64::consts::PI);
     place < SAME_PLACE && turn.min(flipped.angle_to(&b.rotation)) < SAME_TURN
 }

@@ -93,8 +93,7 @@ impl<'a> Surroundings<'a> {
             Some(b.map_or((s.at, s.at), |(l, h)| (l.inf(&s.at), h.sup(&s.at))))
         })?;
         let obstacles = self.obstacles(object, &low, &high);
-        let trusted =
-            fit.filter(|f| f.residual < TRUSTED_RESIDUAL && f.inlier_share() > TRUSTED_SHARE);
+        let trusted = fit.filter(|f| is_trusted(f));
         let seen = spots.len();
         match trusted {
             Some(fit) => self.hidden_by_fit(fit, &low, &high, &mut spots),
@@ -237,6 +236,11 @@ fn matter(
         out
     };
     groups.iter().map(solid).collect()
+}
+
+/// True where a fit may decide about hidden sides.
+pub(super) fn is_trusted(fit: &Fit) -> bool {
+    fit.residual < TRUSTED_RESIDUAL && fit.inlier_share() > TRUSTED_SHARE
 }
 
 fn get(cloud: &PointCloud, i: u32) -> Option<Point> {
