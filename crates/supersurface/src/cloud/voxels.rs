@@ -1,9 +1,9 @@
 //! Which points are near: a voxel grid held as one sorted list.
 //!
 //! Point p lies in the cube with key floor(p / cell), taken by component. The points are sorted by
-//! their keys, so that a cube's points are one slice of the list and finding it is a binary search:
-//! no hashing, no allocation after the build, and the same order on every machine. Keys of absurd
-//! coordinates saturate instead of overflowing; distances are always checked on the points.
+//! their keys, so that a cube's points are one slice of the list and finding it is a binary search over the
+//! occupied cubes: no hashing, no allocation after the build, and the same order on every machine. Keys of
+//! absurd coordinates saturate instead of overflowing; distances are always checked on the points.
 
 use crate::Point;
 use crate::cloud::Sets;
@@ -20,13 +20,28 @@ use crate::cloud::Sets;
 pub struct VoxelGrid<'a> {
     points: &'a [Point],
     cell: f64,
-    /// (key, index of the point), sorted.
-    entries: Vec<(Key, u32)>,
-    /// First entry of each cube that is occupied, and the number of entries at the end.
+    /// Indices of the points, cube after cube, rising within each.
+    entries: Vec<u32>,
+    /// Keys of the cubes that are occupied, rising.
+    cubes: Vec<u128>,
+    /// First entry of each of them, and the number of entries at the end.
     starts: Vec<u32>,
 }
 
-type Key = [i64; 3];
+/// Cubes along each axis: about 2e12 to either side of the origin.
+const BITS: u32 = 42;
+const SIDE: i64 = 1 << BITS;
+
+/// The coordinates of a cube from 0, and the number whose order is theirs.
+type Cube = [i64; 3];
+
+fn pack(cube: Cube) -> u128 {
+    cube.iter().fold(0, |key, c| key << BITS | (*c).clamp(0, SIDE - 1) as u128)
+}
+
+fn unpack(key: u128) -> Cube {
+    [2, 1, 0].map(|k| (key >> (k * BITS)) as i64 & (SIDE - 1))
+}
 
 impl<'a> VoxelGrid<'a> {
     /// Sorts the points named by `indices` into cubes of side `cell` (metres). Points that are not
@@ -40,33 +55,35 @@ impl<'a> VoxelGrid<'a> {
         if !(cell > 0.0 && cell.is_finite()) {
             return None;
         }
-        let mut entries: Vec<(Key, u32)> = indices
+        let mut sorted: Vec<(u128, u32)> = indices
             .into_iter()
             .filter_map(|i| {
                 let p = points.get(i as usize)?;
                 let finite = p.coords.iter().all(|c| c.is_finite());
-                finite.then(|| (key(p, cell), i))
+                finite.then(|| (pack(cube(p, cell)), i))
             })
             .collect();
-        entries.sort_unstable();
-        let mut starts = Vec::new();
-        for (at, entry) in entries.iter().enumerate() {
-            if at == 0 || entries[at - 1].0 != entry.0 {
+        sorted.sort_unstable();
+        let (mut cubes, mut starts) = (Vec::new(), Vec::new());
+        for (at, entry) in sorted.iter().enumerate() {
+            if cubes.last() != Some(&entry.0) {
+                cubes.push(entry.0);
                 starts.push(at as u32);
             }
         }
-        starts.push(entries.len() as u32);
-        Some(Self { points, cell, entries, starts })
+        starts.push(sorted.len() as u32);
+        let entries = sorted.into_iter().map(|e| e.1).collect();
+        Some(Self { points, cell, entries, cubes, starts })
     }
 
     /// Number of cubes that hold a point.
     pub fn occupied(&self) -> usize {
-        self.starts.len() - 1
+        self.cubes.len()
     }
 
     /// One point of each occupied cube (the one with the smallest index), in the order of the cubes.
     pub fn representatives(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.occupied()).map(|c| self.cube(c)[0].1)
+        (0..self.occupied()).map(|c| self.members(c)[0])
     }
 
     /// Calls `visit(index, squared distance)` for every point within `radius` of `p`, in a fixed
@@ -77,19 +94,16 @@ impl<'a> VoxelGrid<'a> {
         if !finite || reach.is_nan() || reach > 64.0 {
             return;
         }
-        let (centre, reach) = (key(p, self.cell), reach as i64);
-        for x in -reach..=reach {
-            for y in -reach..=reach {
+        let ([x, y, z], reach) = (cube(p, self.cell), reach as i64);
+        let inside = |v: i64| (v - reach).max(0)..=(v + reach).min(SIDE - 1);
+        for x in inside(x) {
+            for y in inside(y) {
                 // The cubes of a column along z are neighbours in the list: one search for all.
-                let [cx, cy, cz] = centre;
-                let (x, y) = (cx.saturating_add(x), cy.saturating_add(y));
-                let last = [x, y, cz.saturating_add(reach)];
-                let first = [x, y, cz.saturating_sub(reach)];
-                let start = self.entries.partition_point(|e| e.0 < first);
-                for (k, i) in &self.entries[start..] {
-                    if *k > last {
-                        break;
-                    }
+                let (first, last) = (pack([x, y, z - reach]), pack([x, y, z + reach]));
+                let start = self.cubes.partition_point(|c| *c < first);
+                let count = self.cubes[start..].iter().take_while(|c| **c <= last).count();
+                let [from, to] = [start, start + count].map(|c| self.starts[c] as usize);
+                for i in &self.entries[from..to] {
                     let d = (self.points[*i as usize] - p).norm_squared();
                     if d <= radius * radius {
                         visit(*i, d);
@@ -107,20 +121,18 @@ impl<'a> VoxelGrid<'a> {
         let mut sets = Sets::new(n);
         let mut columns = [0usize; 4];
         for c in 0..n {
-            let [x, y, z] = self.cube(c)[0].0;
+            let [x, y, z] = unpack(self.cubes[c]);
             // Half of the 26 neighbours; the others see this cube from their side. Each of the four
             // columns ahead is followed by a cursor that only moves forwards.
-            if c + 1 < n && self.cube(c + 1)[0].0 == [x, y, z.saturating_add(1)] {
+            if z + 1 < SIDE && self.cubes.get(c + 1) == Some(&(self.cubes[c] + 1)) {
                 sets.join(c, c + 1);
             }
             for (cursor, (dx, dy)) in columns.iter_mut().zip([(0, 1), (1, -1), (1, 0), (1, 1)]) {
-                let (x, y) = (x.saturating_add(dx), y.saturating_add(dy));
-                let first = [x, y, z.saturating_sub(1)];
-                while *cursor < n && self.cube(*cursor)[0].0 < first {
+                let (first, last) = (pack([x + dx, y + dy, z - 1]), pack([x + dx, y + dy, z + 1]));
+                while *cursor < n && self.cubes[*cursor] < first {
                     *cursor += 1;
                 }
-                let last = [x, y, z.saturating_add(1)];
-                let ahead = (*cursor..n).take_while(|d| self.cube(*d)[0].0 <= last);
+                let ahead = (*cursor..n).take_while(|d| self.cubes[*d] <= last);
                 ahead.for_each(|d| sets.join(c, d));
             }
         }
@@ -132,23 +144,23 @@ impl<'a> VoxelGrid<'a> {
                 place[root] = clusters.len() as u32;
                 clusters.push(Vec::new());
             }
-            let members = self.cube(c).iter().map(|e| e.1);
-            clusters[place[root] as usize].extend(members);
+            clusters[place[root] as usize].extend(self.members(c));
         }
         clusters.iter_mut().for_each(|c| c.sort_unstable());
         clusters.sort_unstable_by_key(|c| c[0]);
         clusters
     }
 
-    /// The entries of the c-th occupied cube.
-    fn cube(&self, c: usize) -> &[(Key, u32)] {
+    /// The points of the c-th occupied cube.
+    fn members(&self, c: usize) -> &[u32] {
         &self.entries[self.starts[c] as usize..self.starts[c + 1] as usize]
     }
 }
 
-fn key(p: &Point, cell: f64) -> Key {
+fn cube(p: &Point, cell: f64) -> Cube {
     // `as` saturates, so that no coordinate overflows.
-    [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64)
+    let place = |x: f64| ((x / cell).floor() as i64).saturating_add(SIDE / 2);
+    [p.x, p.y, p.z].map(|x| place(x).clamp(0, SIDE - 1))
 }
 
 #[cfg(test)]
@@ -180,7 +192,7 @@ mod tests {
         let mut sets = Sets::new(300);
         for (i, p) in points.iter().enumerate() {
             for (j, q) in points.iter().enumerate() {
-                let (a, b) = (key(p, 0.08), key(q, 0.08));
+                let (a, b) = (cube(p, 0.08), cube(q, 0.08));
                 if (0..3).all(|k| (a[k] - b[k]).abs() <= 1) {
                     sets.join(i, j);
                 }

@@ -19,17 +19,26 @@ const PADDING: f64 = 50.0;
 impl Sample {
     pub(super) fn new(points: impl Iterator<Item = Vector>) -> Self {
         let mut sample = Self::default();
-        for p in points {
-            for (column, value) in sample.columns.iter_mut().zip(p.iter()) {
-                column.push(*value);
-            }
-            sample.count += 1;
+        sample.set(points);
+        sample
+    }
+
+    /// Takes other points.
+    pub(super) fn set(&mut self, points: impl Iterator<Item = Vector>) {
+        let [x, y, z] = &mut self.columns;
+        for column in [&mut *x, y, z] {
+            column.clear();
         }
-        let padded = sample.count.next_multiple_of(WIDTH);
-        for column in &mut sample.columns {
+        for p in points {
+            x.push(p.x);
+            y.push(p.y);
+            z.push(p.z);
+        }
+        self.count = x.len();
+        let padded = self.count.next_multiple_of(WIDTH);
+        for column in [x, y, z] {
             column.resize(padded, PADDING);
         }
-        sample
     }
 
     /// Number of points without padding.
@@ -61,13 +70,22 @@ impl Evaluation {
             row.resize(padded, 0.0);
         }
         match s.family {
-            Family::Superellipsoid => dispatch(Fill::<false> { s, sample, out: self }),
-            Family::Supertoroid => dispatch(Fill::<true> { s, sample, out: self }),
+            Family::Superellipsoid => dispatch(Fill::<false, true> { s, sample, out: self }),
+            Family::Supertoroid => dispatch(Fill::<true, true> { s, sample, out: self }),
+        }
+    }
+
+    /// Distances alone.
+    pub(super) fn fill_distances(&mut self, s: &Parameters, sample: &Sample) {
+        self.distances.resize(sample.columns[0].len(), 0.0);
+        match s.family {
+            Family::Superellipsoid => dispatch(Fill::<false, false> { s, sample, out: self }),
+            Family::Supertoroid => dispatch(Fill::<true, false> { s, sample, out: self }),
         }
     }
 }
 
-struct Fill<'a, const TOROID: bool> {
+struct Fill<'a, const TOROID: bool, const JACOBIAN: bool> {
     s: &'a Parameters,
     sample: &'a Sample,
     out: &'a mut Evaluation,
@@ -79,7 +97,7 @@ struct Block {
     rows: [[f64; WIDTH]; COUNT],
 }
 
-impl<const TOROID: bool> Job for Fill<'_, TOROID> {
+impl<const TOROID: bool, const JACOBIAN: bool> Job for Fill<'_, TOROID, JACOBIAN> {
     #[inline(always)]
     fn run(self) {
         let [x, y, z] = &self.sample.columns;
@@ -87,9 +105,12 @@ impl<const TOROID: bool> Job for Fill<'_, TOROID> {
         let blocks = blocks.zip(z.as_chunks::<WIDTH>().0).enumerate();
         let mut block = Block { distance: [0.0; WIDTH], rows: [[0.0; WIDTH]; COUNT] };
         for (b, ((x, y), z)) in blocks {
-            evaluate::<TOROID>(self.s, [x, y, z], &mut block);
+            evaluate::<TOROID, JACOBIAN>(self.s, [x, y, z], &mut block);
             let at = b * WIDTH..(b + 1) * WIDTH;
             self.out.distances[at.clone()].copy_from_slice(&block.distance);
+            if !JACOBIAN {
+                continue;
+            }
             for (column, values) in self.out.rows.iter_mut().zip(&block.rows) {
                 column[at.clone()].copy_from_slice(values);
             }
@@ -124,7 +145,11 @@ fn finite(v: f64, otherwise: f64) -> f64 {
 }
 
 #[inline(always)]
-fn evaluate<const TOROID: bool>(s: &Parameters, [x, y, z]: [&[f64; WIDTH]; 3], out: &mut Block) {
+fn evaluate<const TOROID: bool, const JACOBIAN: bool>(
+    s: &Parameters,
+    [x, y, z]: [&[f64; WIDTH]; 3],
+    out: &mut Block,
+) {
     let r = s.rotation.matrix();
     let t = s.position;
     let [l1, l2, l3] = s.log_axes;
@@ -151,6 +176,11 @@ fn evaluate<const TOROID: bool>(s: &Parameters, [x, y, z]: [&[f64; WIDTH]; 3], o
         let square = if square < 1e-18 { 1e-18 } else { square };
         let by_gauge = 1.0 / square.sqrt();
         let d = (g - 1.0) * by_gauge;
+        let usable = d.abs() < 1e100;
+        out.distance[i] = if usable { d } else { FAR };
+        if !JACOBIAN {
+            continue;
+        }
 
         let inverse = by_gauge * by_gauge;
         let (bx, by, bz) = (vx * vx * inverse, vy * vy * inverse, vz * vz * inverse);
@@ -164,8 +194,6 @@ fn evaluate<const TOROID: bool>(s: &Parameters, [x, y, z]: [&[f64; WIDTH]; 3], o
         let by_z = by_gauge * whole2 - by_s1 * p1;
         let (ux, uy, uz) = ((by_x + d * bx) * ix, (by_y + d * by) * iy, (by_z + d * bz) * iz);
 
-        let usable = d.abs() < 1e100;
-        out.distance[i] = if usable { d } else { FAR };
         let keep = |v: f64| if usable { finite(v, 0.0) } else { 0.0 };
         out.rows[0][i] = keep(-by_x);
         out.rows[1][i] = keep(-by_y);

@@ -30,6 +30,7 @@ mod free_space;
 mod kernel;
 mod noise;
 mod parameters;
+mod rays;
 mod search;
 mod solver;
 mod start;

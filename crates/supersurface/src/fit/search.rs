@@ -1,10 +1,10 @@
 //! The way from points to a fit: normalise, search each family, choose, and judge every point.
 
-use super::columns::Sample;
+use super::columns::{Evaluation, Sample};
 use super::evidence::{shows_hole, toroid_margin};
-use super::kernel::distance;
 use super::noise::{Law, Mixture};
-use super::parameters::{COUNT, Family, Parameters};
+use super::parameters::{Family, Parameters};
+use super::rays::Rays;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::start::{quantile, starts};
 use super::switch::relatives;
@@ -212,20 +212,23 @@ impl Normalised {
 
     /// Median distance of the points.
     fn typical(&self, h: &Hypothesis) -> f64 {
-        let mut row = [0.0; COUNT];
-        let distances = self.points.iter().map(|x| distance::<false>(&h.parameters, x, &mut row));
-        quantile(&mut distances.map(f64::abs).collect::<Vec<_>>(), 0.5)
+        let mut distances = distances(&h.parameters, self.points.iter().copied());
+        distances.iter_mut().for_each(|d| *d = d.abs());
+        quantile(&mut distances, 0.5)
     }
 
     /// A hole shows itself by points or by free lines of sight that lie deep in the convex body.
     fn may_be_hollow(&self, h: &Hypothesis) -> bool {
         let deep = -(3.0 * h.mixture.scale).max(0.04);
-        let mut row = [0.0; COUNT];
-        let mut is_deep = |x: &Vector| distance::<false>(&h.parameters, x, &mut row) < deep;
-        let within = self.points.iter().filter(|x| is_deep(x)).count();
+        let deep_among = |points: &[Vector]| {
+            let distances = distances(&h.parameters, points.iter().copied());
+            distances.into_iter().filter(|d| *d < deep).count()
+        };
+        let within = deep_among(&self.points);
         let mut intrusions = Vec::new();
-        self.terms.deepest_on_rays(&h.parameters, FINE_RAYS, true, &mut intrusions);
-        let through = intrusions.iter().filter(|x| is_deep(x)).count();
+        let mut rays = Rays::default();
+        self.terms.intrusions(&h.parameters, FINE_RAYS, true, &mut rays, &mut intrusions);
+        let through = deep_among(&intrusions);
         let looked =
             self.terms.free.len().min(FINE_RAYS) + self.terms.before.len().min(FINE_RAYS / 2);
         within as f64 > HOLLOW * self.points.len() as f64
@@ -234,19 +237,17 @@ impl Normalised {
 
     fn judge(&self, view: &View<'_>, h: &Hypothesis, margin: f64) -> Result<Fit, FitError> {
         let s = &h.parameters;
-        let mut row = [0.0; COUNT];
-        let mut distances = Vec::with_capacity(view.points.len());
-        let judge = |p: &Point| {
-            let x = (p.coords - self.centre) / self.scale;
-            if !x.iter().all(|v| v.is_finite()) {
-                return false;
-            }
-            let d = distance::<false>(s, &x, &mut row);
-            distances.push(d.abs());
-            h.mixture.belongs(d) > 0.5
+        let inward = |p: &Point| (p.coords - self.centre) / self.scale;
+        let is_finite = |x: &Vector| x.iter().all(|v| v.is_finite());
+        let finite = view.points.iter().map(inward).filter(is_finite);
+        let mut distances = distances(s, finite);
+        let mut next = distances.iter();
+        let mut judge = |p: &Point| {
+            is_finite(&inward(p)) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5)
         };
-        let inliers: Vec<bool> = view.points.iter().map(judge).collect();
+        let inliers: Vec<bool> = view.points.iter().map(&mut judge).collect();
         let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
+        distances.iter_mut().for_each(|d| *d = d.abs());
         if share.is_nan() || share < LEAST_SHARE {
             return Err(FitError::NoAgreement { share });
         }
@@ -258,6 +259,15 @@ impl Normalised {
             margin,
         })
     }
+}
+
+/// First-order distances of points in normalised coordinates.
+fn distances(s: &Parameters, points: impl Iterator<Item = Vector>) -> Vec<f64> {
+    let sample = Sample::new(points);
+    let mut evaluation = Evaluation::default();
+    evaluation.fill_distances(s, &sample);
+    evaluation.distances.truncate(sample.len());
+    evaluation.distances
 }
 
 fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {

@@ -2,7 +2,8 @@
 
 use super::columns::{Evaluation, Sample};
 use super::noise::Mixture;
-use super::parameters::{COUNT, Parameters, Row};
+use super::parameters::{COUNT, Family, Parameters, Row};
+use super::rays::Rays;
 use super::terms::{Beside, Normal, Terms};
 use crate::Vector;
 use crate::numeric::lanes::{Job, dispatch, dot};
@@ -39,6 +40,7 @@ pub(super) struct Workspace {
     weights: Vec<f64>,
     weighted: Vec<f64>,
     intrusions: Vec<Vector>,
+    search: Rays,
 }
 
 impl Workspace {
@@ -61,6 +63,12 @@ impl Workspace {
 
     fn beside(&self, points: usize, mixture: &Mixture, schedule: &Schedule) -> Beside<'_> {
         Beside { points, scale: mixture.scale, rays: schedule.rays, intrusions: &self.intrusions }
+    }
+
+    /// Looks for the lines of sight that a body intrudes on. Only a toroid can hide its own far wall.
+    fn look(&mut self, s: &Parameters, terms: &Terms, rays: usize) {
+        let own = s.family == Family::Supertoroid;
+        terms.intrusions(s, rays, own, &mut self.search, &mut self.intrusions);
     }
 
     fn accept(&mut self) {
@@ -110,7 +118,7 @@ pub(super) fn refine(
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
-        terms.intrusions(&s, schedule.rays, &mut work.intrusions);
+        work.look(&s, terms, schedule.rays);
         let mut normal = work.normal(&mixture, n);
         terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
         let before = normal.cost;
@@ -145,7 +153,7 @@ pub(super) fn refine(
         }
     }
     mixture.update(&work.now.distances[..n], schedule.floor, 6);
-    terms.intrusions(&s, schedule.rays, &mut work.intrusions);
+    work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
     terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);
     let cost = mixture.cost(&work.now.distances[..n])

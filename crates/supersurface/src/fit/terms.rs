@@ -5,8 +5,9 @@ use super::columns::{Evaluation, Sample};
 use super::kernel::distance;
 use super::noise::Mixture;
 use super::parameters::{COUNT, EXPONENT, Family, Parameters, RING, Row};
+use super::rays::Rays;
 use crate::Vector;
-use crate::shape::{Superellipsoid, Supertoroid, SupportMap};
+use crate::numeric::superellipse::{dual_exponent, log_layer};
 
 /// The plane under the body, in normalised coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -171,30 +172,25 @@ impl Terms {
         }
     }
 
-    /// The points at which free lines of sight lie deepest in the body, into `found`.
-    pub(super) fn intrusions(&self, s: &Parameters, rays: usize, found: &mut Vec<Vector>) {
-        self.deepest_on_rays(s, rays, s.family == Family::Supertoroid, found);
-    }
-
-    /// The same; `own` says whether the lines of sight to the object's own points are looked at too.
-    pub(super) fn deepest_on_rays(
+    /// The points at which free lines of sight lie deepest in the body, into `found`; `own` says whether the
+    /// lines of sight to the object's own points are looked at too.
+    pub(super) fn intrusions(
         &self,
         s: &Parameters,
         rays: usize,
         own: bool,
+        search: &mut Rays,
         found: &mut Vec<Vector>,
     ) {
         found.clear();
         let Some(viewpoint) = self.viewpoint else { return };
-        let mut look = |ends: &[Vector], rays: usize| {
-            let taken = ends.len().min(rays);
-            let ends = (0..taken).map(|i| &ends[i * ends.len() / taken]);
-            found.extend(ends.filter_map(|end| deepest(s, &viewpoint, end)));
+        let some = |ends: &'_ [Vector], rays: usize| {
+            let (count, taken) = (ends.len(), ends.len().min(rays));
+            (0..taken).map(move |i| i * count / taken)
         };
-        look(&self.free, rays);
-        if own {
-            look(&self.before, rays / 2);
-        }
+        let free = some(&self.free, rays).map(|i| &self.free[i]);
+        let before = some(&self.before, if own { rays / 2 } else { 0 }).map(|i| &self.before[i]);
+        search.deepest(s, &viewpoint, free.chain(before), found);
     }
 }
 
@@ -212,97 +208,39 @@ fn add_intrusions(s: &Parameters, at: &Beside<'_>, to: &mut Normal) {
     }
 }
 
-/// Least height of the body over the plane `normal · x + offset = 0` and its derivatives. By the envelope
-/// theorem the support point may be held while the parameters move.
+/// Least height of the body over the plane `normal · x + offset = 0` and its derivatives.
+///
+/// The support function of a superellipsoid is the two-layered norm with the dual exponents `q = 2/(2 - ε)`,
+/// `h = ‖(ρ, a3 m3)‖` with `ρ = ‖(a1 m1, a2 m2)‖` (FORMULAS §2), and that of a toroid is `h + a4 ρ`. As for the
+/// gauge, `d ln ‖(u, v)‖ = w d ln u + (1 - w) d ln v`, here with `- S(w)/2 dε`; the support point is
+/// `∂h/∂m`, which by the envelope theorem may be held while the body turns.
 fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> (f64, Row) {
     let m = -(s.rotation.inverse_transform_vector(normal));
-    let p = support_point(s, &m);
-    let height = normal.dot(&s.position) + offset - m.dot(&p);
+    let log = |i: usize| m[i].abs().max(1e-9).ln() + s.log_axes[i];
+    let [q1, q2] = s.exponents.map(dual_exponent);
+    let planar = log_layer(log(0), log(1), q2);
+    let whole = log_layer(planar.log_norm, log(2), q1);
+    let tube = whole.log_norm.exp();
+    let radius = planar.log_norm.exp();
+    let ring = if s.family == Family::Supertoroid { s.ring * radius } else { 0.0 };
+    // derivatives of the support function by ln a1, ln a2, ln a3
+    let across = tube * whole.first + ring;
+    let by_axes = [across * planar.first, across * planar.second, tube * whole.second];
+    let p = Vector::from_fn(|i, _| by_axes[i] / m[i].abs().max(1e-9).copysign(m[i]));
+    let height = normal.dot(&s.position) + offset - tube - ring;
     let mut row = [0.0; COUNT];
     let turn = m.cross(&p);
     for i in 0..3 {
-        row[i] = -p[i] * m[i];
+        row[i] = -by_axes[i];
         row[6 + i] = normal[i];
         row[9 + i] = turn[i];
     }
     if s.family == Family::Supertoroid {
-        let ring = support_point(s, &Vector::new(m.x, m.y, 0.0));
-        row[RING] = -(ring.x * m.x + ring.y * m.y) / (s.ring + 1.0);
+        row[RING] = -radius;
     }
-    for i in 0..2 {
-        let mut step = [0.0; COUNT];
-        step[EXPONENT + i] = if s.exponents[i] > 1.0 { -1e-4 } else { 1e-4 };
-        let moved = support_point(&s.stepped(&step), &m);
-        row[EXPONENT + i] = -(m.dot(&moved) - m.dot(&p)) / step[EXPONENT + i];
-    }
+    row[EXPONENT] = 0.5 * tube * whole.entropy;
+    row[EXPONENT + 1] = 0.5 * across * planar.entropy;
     (height, row)
-}
-
-fn support_point(s: &Parameters, direction: &Vector) -> Vector {
-    let axes = s.log_axes.map(f64::exp);
-    let point = match s.family {
-        Family::Superellipsoid => {
-            Superellipsoid::new(axes, s.exponents).map(|b| b.support_point(direction))
-        }
-        Family::Supertoroid => {
-            Supertoroid::new(axes, s.ring, s.exponents).map(|b| b.support_point(direction))
-        }
-    };
-    point.map(|p| p.coords).unwrap_or_default()
-}
-
-/// The point between `from` and `to` that lies deepest in the body (least signed distance), if any is
-/// inside. Along a line the distance to a superellipsoid has one valley, and the sign of its slope halves the
-/// way to it; a toroid may have two, so samples choose the deeper one first.
-fn deepest(s: &Parameters, from: &Vector, to: &Vector) -> Option<Vector> {
-    const SAMPLES: usize = 6;
-    const HALVINGS: usize = 8;
-    let (mut low, mut high) = near(s, from, to)?;
-    let way = to - from;
-    let at = |t: f64| from + way * t;
-    let mut row = [0.0; COUNT];
-    let mut halvings = HALVINGS;
-    if s.family == Family::Supertoroid {
-        let step = (high - low) / SAMPLES as f64;
-        let samples = (0..=SAMPLES).map(|i| low + step * i as f64);
-        let depth = samples.map(|t| (distance::<false>(s, &at(t), &mut row), t));
-        let best = depth.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
-        (low, high) = ((best - step).max(low), (best + step).min(high));
-        halvings -= 2;
-    }
-    let (mut best, mut least) = (low, f64::INFINITY);
-    for _ in 0..halvings {
-        let t = 0.5 * (low + high);
-        let d = distance::<true>(s, &at(t), &mut row);
-        if d < least {
-            (best, least) = (t, d);
-        }
-        // moving the body along its normal lowers the distance: the row of the position is -n
-        let slope = -(row[6] * way.x + row[7] * way.y + row[8] * way.z);
-        if slope > 0.0 { high = t } else { low = t }
-    }
-    (least < 0.0).then(|| at(best))
-}
-
-/// The stretch between `from` and `to`, as shares, that runs through the body's bounding ellipsoid.
-fn near(s: &Parameters, from: &Vector, to: &Vector) -> Option<(f64, f64)> {
-    let half = Vector::from(s.half_extents());
-    let local = |x: &Vector| s.rotation.inverse_transform_vector(&(x - s.position));
-    let a = local(from).component_div(&half);
-    let b = local(to).component_div(&half) - a;
-    let squared = b.norm_squared();
-    if squared == 0.0 {
-        return None;
-    }
-    // a body of exponents >= 0.1 lies within √3 of its scaled centre
-    let middle = -a.dot(&b) / squared;
-    let nearest = (a + b * middle).norm_squared();
-    if nearest >= 3.0 {
-        return None;
-    }
-    let reach = ((3.0 - nearest) / squared).sqrt();
-    let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
-    (low < high).then_some((low, high))
 }
 
 /// `λ Σ ln h_i` over the three half extents.
@@ -331,5 +269,43 @@ fn add_aspect(s: &Parameters, to: &mut Normal) {
             row[RING] = (row[0] + row[1]) * by_ring;
         }
         to.add(logs[i] - mean, 1.0 / (ASPECT_DEVIATION * ASPECT_DEVIATION), &row);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Rotation3;
+
+    use super::*;
+    use crate::numeric::random::Stream;
+    use crate::shape::SupportMap;
+
+    #[test]
+    fn the_least_height_is_that_of_the_support_point_and_its_derivative_is_complete() {
+        let mut random = Stream::new(8, 0);
+        for case in 0..300 {
+            let family = if case % 2 == 0 { Family::Superellipsoid } else { Family::Supertoroid };
+            let s = Parameters {
+                family,
+                log_axes: std::array::from_fn(|_| random.between(-0.8, 0.3)),
+                ring: random.between(1.3, 4.0),
+                exponents: std::array::from_fn(|_| random.between(0.2, 1.8)),
+                position: Vector::from_fn(|_, _| random.between(-0.2, 0.2)),
+                rotation: Rotation3::new(Vector::from_fn(|_, _| random.normal())),
+            };
+            let normal = Vector::from_fn(|_, _| random.normal()).normalize();
+            let (height, row) = extreme(&s, &normal, 0.3);
+            let lowest = s.surface(&Vector::zeros(), 1.0).unwrap().support_point(&-normal);
+            assert!((height - normal.dot(&lowest.coords) - 0.3).abs() < 1e-9, "case {case}");
+            for k in (0..COUNT).filter(|k| s.is_active(*k)) {
+                let at = |h: f64| {
+                    let mut step = [0.0; COUNT];
+                    step[k] = h;
+                    extreme(&s.stepped(&step), &normal, 0.3).0
+                };
+                let numeric = (at(1e-6) - at(-1e-6)) / 2e-6;
+                assert!((numeric - row[k]).abs() < 1e-5, "case {case} parameter {k}: {numeric}");
+            }
+        }
     }
 }

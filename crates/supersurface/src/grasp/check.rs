@@ -77,15 +77,8 @@ pub(super) fn obstruction(
         return Some(Obstruction::Table);
     }
     let inverse = pose.inverse();
-    let radius =
-        boxes.iter().map(|b| b.center.coords.norm() + 0.5 * b.size.norm()).fold(0.0, f64::max);
-    let reach = radius + way;
-    let origin = pose.translation.vector;
     let (low, high) = swept(boxes, way);
     let meets = |p: &Point| {
-        if (p.coords - origin).norm_squared() > reach * reach {
-            return false;
-        }
         let q = inverse * p;
         if !(0..3).all(|k| (low[k]..=high[k]).contains(&q[k])) {
             return false;
@@ -96,25 +89,13 @@ pub(super) fn obstruction(
             d.x.abs() < half.x && d.y.abs() < half.y && d.z < half.z && d.z > -half.z - way
         })
     };
-    let mut strays = 0;
-    for spot in &local.spots {
-        if meets(&spot.at) {
-            strays += 1;
-            if strays > ALLOWED {
-                return Some(Obstruction::Object);
-            }
-        }
+    let (middle, radius) = (pose * nalgebra::center(&low, &high), 0.5 * (high - low).norm());
+    let own = local.clumps.near(middle, radius).flat_map(|k| &local.spots[k]);
+    if own.filter(|s| meets(&s.at)).nth(ALLOWED).is_some() {
+        return Some(Obstruction::Object);
     }
-    let mut strays = 0;
-    for p in &local.obstacles {
-        if meets(p) {
-            strays += 1;
-            if strays > ALLOWED {
-                return Some(Obstruction::Neighbour);
-            }
-        }
-    }
-    None
+    let others = local.obstacle_clumps.near(middle, radius).flat_map(|k| &local.obstacles[k]);
+    others.filter(|p| meets(p)).nth(ALLOWED).map(|_| Obstruction::Neighbour)
 }
 
 /// The box around all boxes on their way in.

@@ -4,6 +4,7 @@
 //! the uncompressed lip), z approaches, x closes, y = z × x.
 
 mod check;
+mod clumps;
 mod gripper;
 mod hole;
 mod plan;

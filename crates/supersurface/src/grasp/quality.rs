@@ -92,29 +92,30 @@ pub(super) fn judge(candidate: &Candidate, local: &Local, jaw: &Jaw) -> Option<J
     let tip = jaw.tip_beyond_tcp;
     let half = 0.5 * candidate.width;
     let mut sides = [Side::default(); 2];
-    let origin = candidate.pose.translation.vector;
-    let reach = (half + TOUCH).hypot(0.525 * jaw.pad_width).hypot(tip.abs() + jaw.pad_length);
-    for spot in &local.spots {
-        // most places are too far away to be touched
-        if (spot.at.coords - origin).norm_squared() > reach * reach {
-            continue;
+    // the ball around the places that one pad touches
+    let reach = (1.5 * TOUCH).hypot(0.525 * jaw.pad_width).hypot(0.55 * jaw.pad_length);
+    for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+        let pad = candidate.pose * Point::new(sign * half, 0.0, tip - 0.5 * jaw.pad_length);
+        for spot in local.clumps.near(pad, reach).flat_map(|k| &local.spots[k]) {
+            if (spot.at - pad).norm_squared() > reach * reach {
+                continue;
+            }
+            let q = inverse * spot.at;
+            let (y, z) = (q.y / (0.5 * jaw.pad_width), (tip - q.z) / jaw.pad_length);
+            if y.abs() > 1.05 || !(-0.05..=1.05).contains(&z) || q.x * sign < 0.0 {
+                continue;
+            }
+            // inside grasps touch from within: the matter lies beyond the pads
+            let depth = (half - q.x.abs()) * outside;
+            if !(-0.5 * TOUCH..=TOUCH).contains(&depth) {
+                continue;
+            }
+            let towards = inverse.rotation * spot.normal;
+            let outward = towards.x * sign * outside;
+            let column = (((y + 1.0) * 1.5) as usize).min(2);
+            let row = ((z * 3.0).max(0.0) as usize).min(2);
+            side.add(spot, &q, outward, cone, 3 * row + column);
         }
-        let q = inverse * spot.at;
-        let (y, z) = (q.y / (0.5 * jaw.pad_width), (tip - q.z) / jaw.pad_length);
-        if y.abs() > 1.05 || !(-0.05..=1.05).contains(&z) {
-            continue;
-        }
-        // inside grasps touch from within: the matter lies beyond the pads
-        let depth = (half - q.x.abs()) * outside;
-        if !(-0.5 * TOUCH..=TOUCH).contains(&depth) {
-            continue;
-        }
-        let side = usize::from(q.x < 0.0);
-        let towards = inverse.rotation * spot.normal;
-        let outward = towards.x * q.x.signum() * outside;
-        let column = (((y + 1.0) * 1.5) as usize).min(2);
-        let row = ((z * 3.0).max(0.0) as usize).min(2);
-        sides[side].add(spot, &q, outward, cone, 3 * row + column);
     }
     let [a, b] = &sides;
     if a.weight < 0.5 || b.weight < 0.5 {

@@ -8,6 +8,7 @@
 use nalgebra::Rotation3;
 
 use super::surroundings::Spot;
+use crate::numeric::lanes::{Job, dispatch};
 use crate::{Point, Vector};
 
 /// Rows of a strip: strips overlap by two of them.
@@ -18,27 +19,16 @@ const MOST: f32 = 400.0;
 /// A place this far below the tips (along the approach) still counts as above them.
 const UNDER: f32 = 0.001;
 
-/// A place in the tool's directions about the object's middle: z along the approach.
+/// A place in the tool's directions about the object's middle, x along the closing axis and z along the approach.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turned {
     pub(super) x: f32,
-    y: f32,
     pub(super) z: f32,
     /// Cosine between its normal and the closing axis.
     pub(super) cosine: f32,
     /// Its weight as evidence of a side: 0 where no normal is known.
     pub(super) evidence: f32,
     pub(super) seen: bool,
-    cell: u32,
-}
-
-/// A place before it is turned.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    at: [f32; 3],
-    normal: [f32; 3],
-    evidence: f32,
-    seen: bool,
 }
 
 /// The cells of one coordinate.
@@ -57,19 +47,33 @@ impl Axis {
         Self { low: 0.5 * (low + high - size * cells as f32), size, cells }
     }
 
-    #[inline]
-    fn cell_of(&self, value: f32) -> usize {
-        // by way of i32, as a conversion to a wider integer costs more than all the rest
-        let k = ((value - self.low) * (1.0 / self.size)) as i32;
-        (k.max(0) as usize).min(self.cells - 1)
+    #[inline(always)]
+    fn cell_of(&self, value: f32) -> u32 {
+        // half a cell less, rounded by the addition, and read from the low bits: a conversion has no vector
+        // instruction that saturates
+        const ROUND: f32 = 8_388_608.0;
+        let place = (value - self.low) * (1.0 / self.size) - 0.5;
+        let last = (self.cells - 1) as f32;
+        let place = if place > 0.0 { place } else { 0.0 };
+        let place = if place < last { place } else { last };
+        (place + ROUND).to_bits() & 0x007F_FFFF
     }
 }
+
+/// Columns of numbers, one a place, padded with the first place to a multiple of [`BLOCK`].
+type Column = Vec<f32>;
+const BLOCK: usize = 16;
 
 /// An object turned towards one approach, with one strip of it laid open.
 #[derive(Default)]
 pub(super) struct Strips {
-    places: Vec<Place>,
-    turned: Vec<Turned>,
+    count: usize,
+    at: [Column; 3],
+    normal: [Column; 3],
+    evidence: Vec<(f32, bool)>,
+    /// The same, turned: x, y, z, and the cosine of the normal.
+    turned: [Column; 4],
+    cells: Vec<u32>,
     rows: Axis,
     bins: Axis,
     /// Places by cell, row after row; those of cell `k` are `starts[k]..starts[k + 1]`.
@@ -85,61 +89,77 @@ pub(super) struct Strips {
 impl Strips {
     /// Takes the places of an object; `middle` becomes the origin.
     pub(super) fn new(spots: &[Spot], middle: &Point) -> Self {
-        let place = |s: &Spot| Place {
-            at: (s.at - middle).cast().into(),
-            normal: s.normal.cast().into(),
-            evidence: match (s.seen, s.normal != Vector::zeros()) {
-                (true, true) => 1.0,
-                (false, true) => 0.6,
-                _ => 0.0,
-            },
-            seen: s.seen,
+        let evidence = |s: &Spot| match (s.seen, s.normal != Vector::zeros()) {
+            (true, true) => 1.0,
+            (false, true) => 0.6,
+            _ => 0.0,
         };
-        Self { places: spots.iter().map(place).collect(), ..Self::default() }
+        let column = |value: &dyn Fn(&Spot) -> f64| {
+            let mut column: Column = spots.iter().map(|s| value(s) as f32).collect();
+            let first = column.first().copied().unwrap_or(0.0);
+            column.resize(spots.len().next_multiple_of(BLOCK), first);
+            column
+        };
+        Self {
+            count: spots.len(),
+            at: [0, 1, 2].map(|k| column(&|s| s.at[k] - middle[k])),
+            normal: [0, 1, 2].map(|k| column(&|s| s.normal[k])),
+            evidence: spots.iter().map(|s| (evidence(s), s.seen)).collect(),
+            ..Self::default()
+        }
     }
 
     /// Turns all places and sorts them into strips of a width.
     pub(super) fn turn(&mut self, rotation: &Rotation3<f64>, width: f32) {
-        let [x, y, z]: [[f32; 3]; 3] = rotation.matrix().cast().into();
-        let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let none = [f32::INFINITY, f32::NEG_INFINITY];
-        let (mut across, mut along) = (none, none);
-        self.turned.clear();
-        self.turned.extend(self.places.iter().map(|p| {
-            let (qx, qy) = (dot(&x, &p.at), dot(&y, &p.at));
-            across = [across[0].min(qx), across[1].max(qx)];
-            along = [along[0].min(qy), along[1].max(qy)];
-            let (z, cosine) = (dot(&z, &p.at), dot(&x, &p.normal));
-            Turned { x: qx, y: qy, z, cosine, evidence: p.evidence, seen: p.seen, cell: 0 }
-        }));
-        self.rows = Axis::new(along, width / ROWS as f32);
-        self.bins = Axis::new(across, BIN);
+        let mut extents = [none; 2];
+        for column in &mut self.turned {
+            column.resize(self.at[0].len(), 0.0);
+        }
+        let axes = rotation.matrix().cast().into();
+        dispatch(Rotate {
+            axes,
+            at: &self.at,
+            normal: &self.normal,
+            turned: &mut self.turned,
+            extents: &mut extents,
+        });
+        self.bins = Axis::new(extents[0], BIN);
+        self.rows = Axis::new(extents[1], width / ROWS as f32);
+        self.cells.resize(self.at[0].len(), 0);
+        dispatch(Cells {
+            turned: &self.turned,
+            axes: [self.bins, self.rows],
+            cells: &mut self.cells,
+        });
         self.sort();
     }
 
     fn sort(&mut self) {
-        let Self { turned, sorted, starts, heights, rows, bins, .. } = self;
-        let cells = rows.cells * bins.cells;
+        let Self { turned, cells, sorted, starts, heights, rows, bins, evidence, .. } = self;
+        let [x, _, z, cosine] = turned;
+        let count = rows.cells * bins.cells;
         starts.clear();
-        starts.resize(cells + 1, 0);
+        starts.resize(count + 1, 0);
         heights.clear();
-        heights.resize(cells, f32::INFINITY);
-        for t in turned.iter_mut() {
-            let k = rows.cell_of(t.y) * bins.cells + bins.cell_of(t.x);
-            t.cell = k as u32;
+        heights.resize(count, f32::INFINITY);
+        for (cell, z) in cells.iter().zip(z.iter()).take(self.count) {
+            let k = *cell as usize;
             starts[k + 1] += 1;
-            heights[k] = heights[k].min(t.z);
+            heights[k] = heights[k].min(*z);
         }
-        let mut count = 0;
+        let mut sum = 0;
         for start in starts.iter_mut() {
-            count += *start;
-            *start = count;
+            sum += *start;
+            *start = sum;
         }
-        sorted.resize(turned.len(), Turned::default());
+        sorted.resize(self.count, Turned::default());
         // filling moves each start to the end of its cell, which is the start of the next
-        for t in turned.iter() {
-            let start = &mut starts[t.cell as usize];
-            sorted[*start as usize] = *t;
+        let places = cells.iter().zip(x.iter().zip(z.iter().zip(cosine.iter())));
+        for ((cell, (x, (z, cosine))), (evidence, seen)) in places.zip(evidence.iter()) {
+            let start = &mut starts[*cell as usize];
+            sorted[*start as usize] =
+                Turned { x: *x, z: *z, cosine: *cosine, evidence: *evidence, seen: *seen };
             *start += 1;
         }
         starts.rotate_right(1);
@@ -210,7 +230,7 @@ impl Strips {
 
     /// The open strip's places in the bins that [from, to] touches, row by row.
     pub(super) fn within(&self, from: f32, to: f32) -> impl Iterator<Item = &[Turned]> {
-        self.in_bins(self.bins.cell_of(from), self.bins.cell_of(to))
+        self.in_bins(self.bins.cell_of(from) as usize, self.bins.cell_of(to) as usize)
     }
 
     fn in_bins(&self, first: usize, last: usize) -> impl Iterator<Item = &[Turned]> {
@@ -219,5 +239,61 @@ impl Strips {
             let [a, b] = [row * bins + first, row * bins + last + 1];
             &self.sorted[self.starts[a] as usize..self.starts[b] as usize]
         })
+    }
+}
+
+/// Turns places and normals, and finds the extents along x and y.
+struct Rotate<'a> {
+    /// The tool's axes, one after the other.
+    axes: [[f32; 3]; 3],
+    at: &'a [Column; 3],
+    normal: &'a [Column; 3],
+    turned: &'a mut [Column; 4],
+    extents: &'a mut [[f32; 2]; 2],
+}
+
+impl Job for Rotate<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let [x, y, z] = self.axes;
+        let rows = [(x, self.at), (y, self.at), (z, self.at), (x, self.normal)];
+        for (out, (axis, [px, py, pz])) in self.turned.iter_mut().zip(rows) {
+            let places = px.iter().zip(py).zip(pz);
+            for (out, ((px, py), pz)) in out.iter_mut().zip(places) {
+                *out = axis[0] * px + axis[1] * py + axis[2] * pz;
+            }
+        }
+        for (extent, column) in self.extents.iter_mut().zip(self.turned.iter()) {
+            let (mut low, mut high) = ([f32::INFINITY; BLOCK], [f32::NEG_INFINITY; BLOCK]);
+            for block in column.as_chunks::<BLOCK>().0 {
+                for i in 0..BLOCK {
+                    low[i] = if block[i] < low[i] { block[i] } else { low[i] };
+                    high[i] = if block[i] > high[i] { block[i] } else { high[i] };
+                }
+            }
+            *extent = [
+                low.into_iter().fold(f32::INFINITY, f32::min),
+                high.into_iter().fold(f32::NEG_INFINITY, f32::max),
+            ];
+        }
+    }
+}
+
+/// Finds the cell of each place.
+struct Cells<'a> {
+    turned: &'a [Column; 4],
+    /// Bins and rows.
+    axes: [Axis; 2],
+    cells: &'a mut [u32],
+}
+
+impl Job for Cells<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let [x, y, ..] = self.turned;
+        let [bins, rows] = self.axes;
+        for (cell, (x, y)) in self.cells.iter_mut().zip(x.iter().zip(y)) {
+            *cell = rows.cell_of(*y) * bins.cells as u32 + bins.cell_of(*x);
+        }
     }
 }

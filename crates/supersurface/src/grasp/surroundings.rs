@@ -3,6 +3,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 
+use super::clumps::Clumps;
 use super::shell::shell;
 use super::sight::Sight;
 use crate::cloud::{PointCloud, VoxelGrid, normals};
@@ -55,6 +56,8 @@ pub(super) struct Local {
     pub(super) spots: Vec<Spot>,
     /// Points of everything else nearby, and of what hides behind it.
     pub(super) obstacles: Vec<Point>,
+    pub(super) clumps: Clumps,
+    pub(super) obstacle_clumps: Clumps,
     /// Middle of the object's matter, as far as it is known.
     pub(super) centre: Point,
     /// Heights of its lowest and highest spot.
@@ -115,6 +118,8 @@ impl<'a> Surroundings<'a> {
         };
         let floor = if self.has_table { 0.0 } else { low.z };
         Some(Local {
+            clumps: Clumps::new(spots.iter().map(|s| s.at)),
+            obstacle_clumps: Clumps::new(obstacles.iter().copied()),
             spots,
             obstacles,
             centre,
@@ -159,7 +164,7 @@ impl<'a> Surroundings<'a> {
             }
             spots.push(Spot { at, normal, seen: false });
         }
-        drop_near(spots, seen, SPACING);
+        drop_near(spots, seen, 1.5 * SPACING);
     }
 
     /// Matter under what was seen, down to the table, where no ray passed.
@@ -262,7 +267,7 @@ fn drop_near(spots: &mut Vec<Spot>, seen: usize, radius: f64) {
         index += 1;
         let mut near = false;
         if index > seen {
-            grid.within(&s.at, 1.5 * radius, |_, _| near = true);
+            grid.within(&s.at, radius, |_, _| near = true);
         }
         !near
     });

@@ -25,22 +25,40 @@ const END: f32 = 0.005;
 /// Tips stay this far above the table.
 const FLOOR: f64 = 0.003;
 /// Candidates that are kept for judgement.
-const KEPT: usize = 220;
-
-/// A candidate with the search's own estimate of its worth.
-type Ranked = (f64, Candidate);
+const KEPT: usize = 140;
 
 /// The most promising candidates, best first.
 pub(super) fn sweep(local: &Local, jaw: &Jaw) -> Vec<Candidate> {
-    let mut found: Vec<Ranked> = Vec::new();
+    let mut best = Best { least: f64::NEG_INFINITY, found: Vec::new() };
     let mut strips = Strips::new(&local.spots, &local.centre);
     for rotation in orientations(local.heights[1] - local.heights[0] > 0.04) {
-        Turn { rotation, local, jaw, strips: &mut strips }.search(&mut found);
+        Turn { rotation, local, jaw, strips: &mut strips }.search(&mut best);
     }
-    // stable, so that ties keep the order of the search
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.truncate(KEPT);
-    found.into_iter().map(|(_, c)| c).collect()
+    best.cut();
+    best.found.into_iter().map(|(_, c)| c).collect()
+}
+
+/// The candidates with the highest worth by the search's own estimate.
+struct Best {
+    /// What is worth no more than this is not among them.
+    least: f64,
+    found: Vec<(f64, Candidate)>,
+}
+
+impl Best {
+    fn take(&mut self, worth: f64, candidate: Candidate) {
+        self.found.push((worth, candidate));
+        if self.found.len() == 2 * KEPT {
+            self.cut();
+            self.least = self.found[KEPT - 1].0;
+        }
+    }
+
+    fn cut(&mut self) {
+        // stable, so that ties keep the order of the search
+        self.found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        self.found.truncate(KEPT);
+    }
 }
 
 /// Least width of the whole object over the level closing directions of an approach from above, in metres.
@@ -95,7 +113,7 @@ struct Turn<'a> {
 }
 
 impl Turn<'_> {
-    fn search(&mut self, found: &mut Vec<Ranked>) {
+    fn search(&mut self, best: &mut Best) {
         self.strips.turn(&self.rotation, self.jaw.pad_width as f32 + 2.0 * BESIDE);
         for strip in 0..self.strips.count() {
             let (y, places, top) = self.strips.open(strip);
@@ -104,13 +122,13 @@ impl Turn<'_> {
             }
             let deepest = self.jaw.finger_depth as f32 - 0.004;
             for depth in DEPTHS {
-                self.close(y, top + depth.min(deepest), found);
+                self.close(y, top + depth.min(deepest), best);
             }
             if let Some(tip) = self.floor(y)
                 && tip - top < deepest
                 && tip > top + 0.004
             {
-                self.close(y, tip, found);
+                self.close(y, tip, best);
             }
         }
     }
@@ -128,39 +146,43 @@ impl Turn<'_> {
     }
 
     /// Closes on every stretch of matter above the tips.
-    fn close(&self, y: f32, tip: f32, found: &mut Vec<Ranked>) {
+    fn close(&self, y: f32, tip: f32, best: &mut Best) {
         let room = self.jaw.finger_thickness + 2.0 * self.jaw.clearance.min(0.004);
         self.strips.stretches(tip, room as f32, |from, to| {
-            found.extend(self.propose([from, to, y, tip]));
+            self.propose([from, to, y, tip], best);
         });
     }
 
-    fn propose(&self, [from, to, y, tip]: [f32; 4]) -> Option<Ranked> {
+    fn propose(&self, [from, to, y, tip]: [f32; 4], best: &mut Best) {
         let jaw = self.jaw;
         let width = f64::from(to - from);
         let least = LEAST_WIDTH.max(jaw.min_opening);
         if width < least || width + jaw.clearance > jaw.max_opening {
-            return None;
+            return;
         }
-        if self.meets_table([from, to, y, tip]) {
-            return None;
-        }
-        let sides = self.sides([from, to, tip])?;
-        let [good, other, bad] = sides.map(f64::from);
         let tcp = f64::from(tip) - jaw.tip_beyond_tcp;
         let middle = Vector::new(f64::from(0.5 * (from + to)), f64::from(y), tcp);
         // the lever from the object's middle, which is the origin here
         let lever = middle.yz().norm();
+        let price = 5.0 * lever
+            + 0.15 * (1.0 + self.rotation.matrix().m33)
+            + 0.5 * (1.0 - ((jaw.max_opening - width - jaw.clearance) / 0.015).min(1.0));
+        // sides are worth 1.5 at most: most stretches need not be looked at
+        if 1.5 - price <= best.least || self.meets_table([from, to, y, tip]) {
+            return;
+        }
+        let Some(sides) = self.sides([from, to, tip]) else { return };
+        let [good, other, bad] = sides.map(f64::from);
         let full = |v: f64| (v / 8.0).min(1.0);
-        let value = 0.5 * (full(good) + full(other)) + 0.5 * full(good.min(other))
+        let worth = 0.5 * (full(good) + full(other)) + 0.5 * full(good.min(other))
             - 0.5 * bad / (bad + good + other + 1.0)
-            - 5.0 * lever
-            - 0.15 * (1.0 + self.rotation.matrix().m33)
-            - 0.5 * (1.0 - ((jaw.max_opening - width - jaw.clearance) / 0.015).min(1.0));
-        let at = self.local.centre.coords + self.rotation * middle;
-        let turn = UnitQuaternion::from_rotation_matrix(&self.rotation);
-        let pose = Pose::from_parts(at.into(), turn);
-        Some((value, Candidate { pose, width, inside: false, source: "sweep" }))
+            - price;
+        if worth > best.least {
+            let at = self.local.centre.coords + self.rotation * middle;
+            let turn = UnitQuaternion::from_rotation_matrix(&self.rotation);
+            let pose = Pose::from_parts(at.into(), turn);
+            best.take(worth, Candidate { pose, width, inside: false, source: "sweep" });
+        }
     }
 
     /// True when a corner of an open tip would go into the table.

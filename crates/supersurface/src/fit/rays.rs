@@ -1,0 +1,116 @@
+//! Where do free lines of sight lie deepest in a body?
+//!
+//! Along a line the distance to a superellipsoid has one valley, and the sign of its slope halves the way to it;
+//! a toroid may have two, so samples choose the deeper one first. All lines are searched side by side.
+
+use super::columns::{Evaluation, Sample};
+use super::parameters::{Family, Parameters};
+use crate::Vector;
+
+/// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
+const SAMPLES: usize = 6;
+const HALVINGS: usize = 8;
+
+/// One line, and the stretch of it in which the deepest place is looked for.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    way: Vector,
+    low: f64,
+    high: f64,
+    deepest: f64,
+    depth: f64,
+}
+
+impl Line {
+    /// Takes a place that lies deeper than those before.
+    fn take(&mut self, at: f64, depth: f64) {
+        if depth < self.depth {
+            (self.deepest, self.depth) = (at, depth);
+        }
+    }
+}
+
+/// Buffers of the search.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rays {
+    lines: Vec<Line>,
+    places: Sample,
+    evaluation: Evaluation,
+}
+
+impl Rays {
+    /// Adds to `found` the place on each line from `from` that lies deepest in the body (least signed distance),
+    /// for the lines that enter it.
+    pub(super) fn deepest<'a>(
+        &mut self,
+        s: &Parameters,
+        from: &Vector,
+        ends: impl Iterator<Item = &'a Vector>,
+        found: &mut Vec<Vector>,
+    ) {
+        self.lines.clear();
+        self.lines.extend(ends.filter_map(|end| {
+            let (low, high) = near(s, from, end)?;
+            Some(Line { way: end - from, low, high, deepest: low, depth: f64::INFINITY })
+        }));
+        let mut halvings = HALVINGS;
+        if s.family == Family::Supertoroid {
+            self.choose_valleys(s, from);
+            halvings -= 2;
+        }
+        for _ in 0..halvings {
+            let middle = |l: &Line| 0.5 * (l.low + l.high);
+            self.places.set(self.lines.iter().map(|l| from + l.way * middle(l)));
+            self.evaluation.fill(s, &self.places);
+            for (i, line) in self.lines.iter_mut().enumerate() {
+                let t = middle(line);
+                line.take(t, self.evaluation.distances[i]);
+                // moving the body along its normal lowers the distance: the row of the position is -n
+                let slope: f64 =
+                    (0..3).map(|k| -self.evaluation.rows[6 + k][i] * line.way[k]).sum();
+                if slope > 0.0 { line.high = t } else { line.low = t }
+            }
+        }
+        let inside = self.lines.iter().filter(|l| l.depth < 0.0);
+        found.extend(inside.map(|l| from + l.way * l.deepest));
+    }
+
+    /// Narrows each line to the neighbourhood of its deepest sample.
+    fn choose_valleys(&mut self, s: &Parameters, from: &Vector) {
+        for k in 0..=SAMPLES {
+            let share = k as f64 / SAMPLES as f64;
+            let at = |l: &Line| l.low + (l.high - l.low) * share;
+            self.places.set(self.lines.iter().map(|l| from + l.way * at(l)));
+            self.evaluation.fill_distances(s, &self.places);
+            for (line, depth) in self.lines.iter_mut().zip(&self.evaluation.distances) {
+                line.take(at(line), *depth);
+            }
+        }
+        for line in &mut self.lines {
+            let step = (line.high - line.low) / SAMPLES as f64;
+            line.low = line.low.max(line.deepest - step);
+            line.high = line.high.min(line.deepest + step);
+        }
+    }
+}
+
+/// The stretch between `from` and `to`, as shares, that runs through the body's bounding ellipsoid.
+fn near(s: &Parameters, from: &Vector, to: &Vector) -> Option<(f64, f64)> {
+    let half = Vector::from(s.half_extents());
+    let local = |x: &Vector| s.rotation.inverse_transform_vector(&(x - s.position));
+    let a = local(from).component_div(&half);
+    let b = local(to).component_div(&half) - a;
+    let squared = b.norm_squared();
+    if squared == 0.0 {
+        return None;
+    }
+    // a body of exponents >= 0.1 lies within √3 of its scaled centre
+    let middle = -a.dot(&b) / squared;
+    let nearest = (a + b * middle).norm_squared();
+    if nearest >= 3.0 {
+        return None;
+    }
+    let reach = ((3.0 - nearest) / squared).sqrt();
+    let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
+    (low < high).then_some((low, high))
+}
