@@ -99,13 +99,13 @@ struct Block {
 
 impl<const TOROID: bool, const JACOBIAN: bool> Job for Fill<'_, TOROID, JACOBIAN> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const FUSED: bool>(self) {
         let [x, y, z] = &self.sample.columns;
         let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
         let blocks = blocks.zip(z.as_chunks::<WIDTH>().0).enumerate();
         let mut block = Block { distance: [0.0; WIDTH], rows: [[0.0; WIDTH]; COUNT] };
         for (b, ((x, y), z)) in blocks {
-            evaluate::<TOROID, JACOBIAN>(self.s, [x, y, z], &mut block);
+            evaluate::<FUSED, TOROID, JACOBIAN>(self.s, [x, y, z], &mut block);
             let at = b * WIDTH..(b + 1) * WIDTH;
             self.out.distances[at.clone()].copy_from_slice(&block.distance);
             if !JACOBIAN {
@@ -121,10 +121,10 @@ impl<const TOROID: bool, const JACOBIAN: bool> Job for Fill<'_, TOROID, JACOBIAN
 /// Weights of two arguments given by their logarithms, as [`crate::numeric::superellipse::log_layer`]:
 /// `(log norm, first, second, entropy, spread)`.
 #[inline(always)]
-fn layer(u: f64, v: f64, p: f64) -> (f64, f64, f64, f64, f64) {
+fn layer<const FUSED: bool>(u: f64, v: f64, p: f64) -> (f64, f64, f64, f64, f64) {
     let spread = p * (u - v);
-    let t = exp(-spread.abs());
-    let l = ln(1.0 + t);
+    let t = exp::<FUSED>(-spread.abs());
+    let l = ln::<FUSED>(1.0 + t);
     let major = 1.0 / (1.0 + t);
     let minor = t * major;
     let (first, second) = if spread > 0.0 { (major, minor) } else { (minor, major) };
@@ -145,7 +145,7 @@ fn finite(v: f64, otherwise: f64) -> f64 {
 }
 
 #[inline(always)]
-fn evaluate<const TOROID: bool, const JACOBIAN: bool>(
+fn evaluate<const FUSED: bool, const TOROID: bool, const JACOBIAN: bool>(
     s: &Parameters,
     [x, y, z]: [&[f64; WIDTH]; 3],
     out: &mut Block,
@@ -162,13 +162,13 @@ fn evaluate<const TOROID: bool, const JACOBIAN: bool>(
         let qz = off_plane(r.m13 * dx + r.m23 * dy + r.m33 * dz);
         let (ix, iy, iz) = (1.0 / qx, 1.0 / qy, 1.0 / qz);
         let (log_planar, planar1, planar2, planar_entropy, planar_spread) =
-            layer(ln(qx.abs()) - l1, ln(qy.abs()) - l2, p2);
-        let radius = if TOROID { exp(log_planar) } else { 1.0 };
+            layer::<FUSED>(ln::<FUSED>(qx.abs()) - l1, ln::<FUSED>(qy.abs()) - l2, p2);
+        let radius = if TOROID { exp::<FUSED>(log_planar) } else { 1.0 };
         let offset = if TOROID { off_plane(radius - s.ring) } else { 1.0 };
-        let log_offset = if TOROID { ln(offset.abs()) } else { log_planar };
+        let log_offset = if TOROID { ln::<FUSED>(offset.abs()) } else { log_planar };
         let (log_gauge, whole1, whole2, whole_entropy, whole_spread) =
-            layer(log_offset, ln(qz.abs()) - l3, p1);
-        let g = exp(log_gauge);
+            layer::<FUSED>(log_offset, ln::<FUSED>(qz.abs()) - l3, p1);
+        let g = exp::<FUSED>(log_gauge);
         let slope = if TOROID { radius / offset } else { 1.0 };
         let across = g * whole1 * slope;
         let (vx, vy, vz) = (across * planar1 * ix, across * planar2 * iy, g * whole2 * iz);

@@ -9,7 +9,7 @@ use crate::Vector;
 
 /// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
 const SAMPLES: usize = 6;
-const HALVINGS: usize = 8;
+const HALVINGS: usize = 6;
 
 /// One line, and the stretch of it in which the deepest place is looked for.
 #[derive(Clone, Copy, Debug)]

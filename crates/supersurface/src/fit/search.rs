@@ -6,7 +6,7 @@ use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
 use super::rays::Rays;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
-use super::start::{quantile, starts};
+use super::start::{Frame, frames, quantile, starts};
 use super::switch::relatives;
 use super::terms::{RAY_DENSITY, Support, Terms};
 use super::{Fit, FitError, FitOptions, View};
@@ -60,6 +60,7 @@ struct Normalised {
     middle: Sample,
     fine: Sample,
     points: Vec<Vector>,
+    frames: Vec<Frame>,
     terms: Terms,
 }
 
@@ -126,6 +127,7 @@ impl Normalised {
             coarse: sample(COARSE),
             middle: sample(MIDDLE),
             fine: Sample::new(fine.iter().copied()),
+            frames: frames(&fine, &terms),
             points: fine,
             terms,
         })
@@ -135,7 +137,7 @@ impl Normalised {
     fn best(&self, family: Family) -> Hypothesis {
         let mut work = Workspace::default();
         // most starts are hopeless after a few rounds on few points
-        let mut ranked: Vec<Hypothesis> = starts(&self.points, &self.terms, family)
+        let mut ranked: Vec<Hypothesis> = starts(&self.frames, &self.terms, family)
             .iter()
             .map(|s| begin(s, &self.terms))
             .collect();

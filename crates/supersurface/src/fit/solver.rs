@@ -86,15 +86,15 @@ struct Accumulate<'a> {
 
 impl Job for Accumulate<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const FUSED: bool>(self) {
         let Evaluation { distances, rows } = self.evaluation;
         for (i, row) in rows.iter().enumerate() {
             for ((w, weight), value) in self.weighted.iter_mut().zip(self.weights).zip(row) {
                 *w = weight * value;
             }
-            self.normal.gradient[i] = dot(self.weighted, distances);
+            self.normal.gradient[i] = dot::<FUSED>(self.weighted, distances);
             for (entry, other) in self.normal.matrix[i].iter_mut().zip(&rows[..=i]) {
-                *entry = dot(self.weighted, other);
+                *entry = dot::<FUSED>(self.weighted, other);
             }
         }
     }

@@ -20,27 +20,27 @@ const EXPONENT: f64 = 0.6;
 /// Two frames whose axes agree within this cosine are one.
 const SAME_AXIS: f64 = 0.985;
 
-/// All starts of a family for normalised points.
-pub(super) fn starts(points: &[Vector], terms: &Terms, family: Family) -> Vec<Parameters> {
+/// All starts of a family in the frames of a cloud.
+pub(super) fn starts(frames: &[Frame], terms: &Terms, family: Family) -> Vec<Parameters> {
     let mut out = Vec::new();
-    for frame in frames(points, terms) {
-        let extents = Extents::of(&frame, terms);
+    for frame in frames {
+        let extents = Extents::of(frame, terms);
         let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
         for depth in depths {
-            extents.completed(*depth).bodies(&frame, family, &mut out);
+            extents.completed(*depth).bodies(frame, family, &mut out);
         }
     }
     out
 }
 
 /// A right-handed frame and the points that a body in it should hold.
-struct Frame {
+pub(super) struct Frame {
     axes: Matrix3<f64>,
     points: Vec<Vector>,
 }
 
-/// Frames without near duplicates.
-fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+/// Frames for normalised points, without near duplicates.
+pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
     let mut out: Vec<Frame> = Vec::new();
     let mut push = |axes: Matrix3<f64>, points: Vec<Vector>| {
         // two frames with the same axes differ only where outliers stretch one of them

@@ -76,10 +76,10 @@ pub(super) fn obstruction(
     if meets_table(boxes, pose, local) || meets_table(boxes, &before, local) {
         return Some(Obstruction::Table);
     }
-    let inverse = pose.inverse();
+    let axes = pose.rotation.to_rotation_matrix();
     let (low, high) = swept(boxes, way);
     let meets = |p: &Point| {
-        let q = inverse * p;
+        let q = Point::from(axes.inverse_transform_vector(&(p - pose.translation.vector).coords));
         if !(0..3).all(|k| (low[k]..=high[k]).contains(&q[k])) {
             return false;
         }

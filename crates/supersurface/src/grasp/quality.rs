@@ -85,7 +85,8 @@ impl Side {
 
 /// Judges a candidate; `None` when a pad touches nothing.
 pub(super) fn judge(candidate: &Candidate, local: &Local, jaw: &Jaw) -> Option<Judged> {
-    let inverse = candidate.pose.inverse();
+    let axes = candidate.pose.rotation.to_rotation_matrix();
+    let origin = Point::from(candidate.pose.translation.vector);
     let (mu, outside) = if candidate.inside { (jaw.outside_mu, -1.0) } else { (jaw.mu, 1.0) };
     // cos(atan mu)
     let cone = 1.0 / (1.0 + mu * mu).sqrt();
@@ -100,7 +101,7 @@ pub(super) fn judge(candidate: &Candidate, local: &Local, jaw: &Jaw) -> Option<J
             if (spot.at - pad).norm_squared() > reach * reach {
                 continue;
             }
-            let q = inverse * spot.at;
+            let q = Point::from(axes.inverse_transform_vector(&(spot.at - origin)));
             let (y, z) = (q.y / (0.5 * jaw.pad_width), (tip - q.z) / jaw.pad_length);
             if y.abs() > 1.05 || !(-0.05..=1.05).contains(&z) || q.x * sign < 0.0 {
                 continue;
@@ -110,8 +111,7 @@ pub(super) fn judge(candidate: &Candidate, local: &Local, jaw: &Jaw) -> Option<J
             if !(-0.5 * TOUCH..=TOUCH).contains(&depth) {
                 continue;
             }
-            let towards = inverse.rotation * spot.normal;
-            let outward = towards.x * sign * outside;
+            let outward = axes.matrix().column(0).dot(&spot.normal) * sign * outside;
             let column = (((y + 1.0) * 1.5) as usize).min(2);
             let row = ((z * 3.0).max(0.0) as usize).min(2);
             side.add(spot, &q, outward, cone, 3 * row + column);

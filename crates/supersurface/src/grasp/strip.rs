@@ -254,7 +254,7 @@ struct Rotate<'a> {
 
 impl Job for Rotate<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const FUSED: bool>(self) {
         let [x, y, z] = self.axes;
         let rows = [(x, self.at), (y, self.at), (z, self.at), (x, self.normal)];
         for (out, (axis, [px, py, pz])) in self.turned.iter_mut().zip(rows) {
@@ -289,7 +289,7 @@ struct Cells<'a> {
 
 impl Job for Cells<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<const FUSED: bool>(self) {
         let [x, y, ..] = self.turned;
         let [bins, rows] = self.axes;
         for (cell, (x, y)) in self.cells.iter_mut().zip(x.iter().zip(y)) {
