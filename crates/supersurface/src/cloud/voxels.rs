@@ -152,7 +152,7 @@ impl<'a> VoxelGrid<'a> {
     }
 
     /// The points of the c-th occupied cube.
-    fn members(&self, c: usize) -> &[u32] {
+    pub fn members(&self, c: usize) -> &[u32] {
         &self.entries[self.starts[c] as usize..self.starts[c + 1] as usize]
     }
 }

@@ -8,16 +8,19 @@
 //! of it hides its middle.
 
 mod clusters;
+mod convexity;
 mod footprint;
 mod image;
 mod masks;
 mod objects;
+mod patches;
 mod piece;
 mod planes;
 mod raster;
 mod sight;
 mod table;
 
+pub use convexity::convex_pieces;
 pub use masks::{segment_masks, segment_whole};
 pub use table::NoTable;
 

@@ -1,5 +1,7 @@
 //! Floor 9: cloud to table to objects to surfaces to grasps, with one options struct and one report.
 
+mod heap;
+
 use crate::cloud::PointCloud;
 use crate::fit::{Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::grasp::{Grasp, GraspOptions, Gripper, Refusal, Surroundings, plan};
@@ -79,14 +81,27 @@ pub fn run(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Report, SegmentError> {
     progress(Stage::Segment);
-    let segmentation = match options.objects {
+    let mut segmentation = match options.objects {
         Objects::Find => segment(cloud, &options.segment)?,
         Objects::Whole => segment_whole(cloud)?,
         Objects::Given => segment_masks(cloud, &options.segment)?,
     };
     let count = segmentation.objects.len();
     progress(Stage::Fit(count));
-    let fits = each(count, |i| fit_object(cloud, &segmentation, i, options));
+    let fits = each(count, |i| {
+        let whole = segmentation.objects[i].clone();
+        let fit_points = |points: &[u32]| fit_object(cloud, &segmentation, points, options);
+        let fit = fit_points(&whole);
+        match options.objects {
+            Objects::Find => heap::parted(cloud, (whole, fit), &fit_points),
+            Objects::Whole | Objects::Given => vec![(whole, fit)],
+        }
+    });
+    let mut found: Vec<heap::Fitted> = fits.into_iter().flatten().collect();
+    found.sort_by_key(|(points, _)| points.first().copied());
+    let (objects, fits): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    segmentation.objects = objects;
+    let count = segmentation.objects.len();
     progress(Stage::Grasp(count));
     let around = Surroundings::new(cloud, &segmentation);
     let grasps = each(count, |i| plan(i, fits[i].as_ref().ok(), &around, gripper, &options.grasp));
@@ -98,19 +113,15 @@ pub fn run(
 fn fit_object(
     cloud: &PointCloud,
     segmentation: &Segmentation,
-    index: usize,
+    object: &[u32],
     options: &Options,
 ) -> Result<Fit, FitError> {
-    let object = &segmentation.objects[index];
     let points: Vec<Point> = object.iter().map(|i| cloud.points[*i as usize]).collect();
     let free = match options.objects {
         Objects::Whole => outline_points(cloud, object),
         Objects::Find | Objects::Given => free_points(cloud, object),
     };
-    let standing = match (options.objects, segmentation.support) {
-        (Objects::Given, Some(table)) => lowest(&table, &points) < STANDING,
-        (_, support) => support.is_some(),
-    };
+    let standing = segmentation.support.is_some_and(|t| lowest(&t, &points) < STANDING);
     let view = View {
         points: &points,
         viewpoint: cloud.viewpoint,

@@ -1,0 +1,85 @@
+//! Where would one cut a heap? Between patches that meet at a concave edge: two things touch there.
+//!
+//! Patches with centres `c1`, `c2` and normals `n1`, `n2` meet at a convex or flat edge when
+//! `(c1 - c2)·(n1 - n2) >= 0`, or when the normals differ by less than a tolerance (Stein et al., CVPR 2014).
+//! An edge counts only if the patches do not merely pass each other's ends: the angle between `c1 - c2` and
+//! `n1 × n2` must exceed `60°/(1 + exp(-0.25 (β - 25°)))` for normals that differ by β.
+//!
+//! What is cut need not be two things: a handle and a bowl's floor are concave too. So this proposes, and
+//! whoever can say what a thing looks like decides.
+
+use crate::cloud::{PointCloud, Sets, VoxelGrid};
+use crate::segment::patches::{Patch, Patches, patches};
+
+/// Normals that differ by less than this many degrees belong to one surface.
+const TOLERANCE: f64 = 15.0;
+/// A piece of fewer patches is a crumb of its neighbour.
+const LEAST_PATCHES: usize = 3;
+/// Points that are so far apart, in metres, do not show edges.
+const SPARSE: f64 = 0.004;
+
+/// The pieces of an object between its concave edges, the indices of each in ascending order; one piece where
+/// nothing parts it, where its points are too far apart or the sensor's place is not known.
+pub fn convex_pieces(cloud: &PointCloud, object: &[u32]) -> Vec<Vec<u32>> {
+    if cloud.viewpoint.is_none() || is_sparse(cloud, object) {
+        return vec![object.to_vec()];
+    }
+    let patches = patches(cloud, object);
+    let mut pieces = vec![Vec::new(); patches.patches.len()];
+    for (k, root) in roots(&patches).into_iter().enumerate() {
+        pieces[root].extend_from_slice(&patches.points[k]);
+    }
+    pieces.retain(|p| !p.is_empty());
+    pieces.iter_mut().for_each(|p| p.sort_unstable());
+    pieces.sort_unstable_by_key(|p| p[0]);
+    if pieces.is_empty() { vec![object.to_vec()] } else { pieces }
+}
+
+/// The piece of each patch, as the number of one of its patches.
+fn roots(patches: &Patches) -> Vec<usize> {
+    let all = &patches.patches;
+    let mut sets = Sets::new(all.len());
+    for ([a, b], _) in &patches.borders {
+        if is_convex(&all[*a as usize], &all[*b as usize]) {
+            sets.join(*a as usize, *b as usize);
+        }
+    }
+    // crumbs go to the neighbour with the longest border, the smallest crumbs first
+    loop {
+        let roots: Vec<usize> = (0..all.len()).map(|k| sets.root(k)).collect();
+        let mut sizes = vec![0usize; all.len()];
+        roots.iter().for_each(|r| sizes[*r] += 1);
+        let mut contact = std::collections::BTreeMap::<[usize; 2], u32>::new();
+        for ([a, b], count) in &patches.borders {
+            let (a, b) = (roots[*a as usize], roots[*b as usize]);
+            for pair in [[a, b], [b, a]].into_iter().filter(|_| a != b) {
+                *contact.entry(pair).or_default() += count;
+            }
+        }
+        let crumbs = contact.iter().filter(|([a, _], _)| sizes[*a] < LEAST_PATCHES);
+        let best = crumbs.max_by_key(|([a, b], count)| {
+            (std::cmp::Reverse(sizes[*a]), **count, std::cmp::Reverse([*a, *b]))
+        });
+        let Some(([a, b], _)) = best else { return roots };
+        sets.join(*a, *b);
+    }
+}
+
+fn is_convex(a: &Patch, b: &Patch) -> bool {
+    let apart = a.centre - b.centre;
+    let bend = a.normal.angle(&b.normal).to_degrees();
+    let crossing = a.normal.cross(&b.normal);
+    if let (Some(along), Some(apart)) = (crossing.try_normalize(1e-6), apart.try_normalize(1e-12)) {
+        let angle = along.dot(&apart).abs().min(1.0).acos().to_degrees();
+        if angle < 60.0 / (1.0 + (-0.25 * (bend - 25.0)).exp()) {
+            return false;
+        }
+    }
+    apart.dot(&(a.normal - b.normal)) >= 0.0 || bend < TOLERANCE
+}
+
+/// Whether voxels of twice the spacing that shows edges hold fewer than four points on the average.
+fn is_sparse(cloud: &PointCloud, object: &[u32]) -> bool {
+    VoxelGrid::new(&cloud.points, object.iter().copied(), 2.0 * SPARSE)
+        .is_none_or(|grid| object.len() < 4 * grid.occupied())
+}

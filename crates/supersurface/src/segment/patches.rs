@@ -1,0 +1,181 @@
+//! Small flat patches of a surface (supervoxels): the pieces that are too small to hold a crease.
+//!
+//! The points are thinned to voxels. Seeds on a coarser grid claim the voxels around them, step by step from
+//! voxel to neighbour, so that no patch jumps over a gap; a voxel goes to the patch that is nearest by
+//! `|p - c|/size + 4 (1 - n·m)`, with `c`, `m` the patch's mean place and normal (Papon et al., CVPR 2013,
+//! without colour).
+
+use crate::cloud::{PointCloud, VoxelGrid, normals};
+use crate::{Point, Vector};
+
+/// Side of a voxel, radius of its normal, and distance of the seeds, in metres.
+const VOXEL: f64 = 0.005;
+const NORMAL_RADIUS: f64 = 0.012;
+const SEED: f64 = 0.022;
+/// Voxels nearer than this are neighbours: those that share a face, an edge or a corner.
+const NEIGHBOUR: f64 = 1.75 * VOXEL;
+/// Weight of the normals against space.
+const NORMALS: f64 = 4.0;
+/// Rounds in which the patches settle.
+const ROUNDS: usize = 3;
+
+/// A patch: its mean place and normal, and the voxel next to that place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patch {
+    pub(crate) centre: Point,
+    pub(crate) normal: Vector,
+    seed: usize,
+}
+
+/// An object as patches.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Patches {
+    pub(crate) patches: Vec<Patch>,
+    /// Pairs of patches that touch (smaller number first, rising), with the number of pairs of voxels that do.
+    pub(crate) borders: Vec<([u32; 2], u32)>,
+    /// The points of each patch.
+    pub(crate) points: Vec<Vec<u32>>,
+}
+
+/// What has not been claimed yet.
+const NOBODY: u32 = u32::MAX;
+
+/// The patches of an object; points without a normal go with their neighbours or to none.
+pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
+    let Some(grid) = VoxelGrid::new(&cloud.points, object.iter().copied(), VOXEL) else {
+        return Patches::default();
+    };
+    let voxels = Voxels::new(cloud, &grid);
+    let (owners, patches) = voxels.claim();
+    let mut borders: Vec<[u32; 2]> = Vec::new();
+    for (i, near) in voxels.near.iter().enumerate() {
+        let across = near.iter().map(|j| [owners[i], owners[*j as usize]]);
+        borders.extend(across.filter(|[a, b]| a < b && *b != NOBODY));
+    }
+    borders.sort_unstable();
+    let counted = borders.chunk_by(|a, b| a == b).map(|pair| (pair[0], pair.len() as u32));
+    let mut points = vec![Vec::new(); patches.len()];
+    for (c, owner) in owners.iter().enumerate() {
+        if let Some(points) = points.get_mut(*owner as usize) {
+            points.extend_from_slice(grid.members(c));
+        }
+    }
+    Patches { patches, borders: counted.collect(), points }
+}
+
+struct Voxels {
+    at: Vec<Point>,
+    normal: Vec<Option<Vector>>,
+    near: Vec<Vec<u32>>,
+}
+
+impl Voxels {
+    fn new(cloud: &PointCloud, grid: &VoxelGrid<'_>) -> Self {
+        let first: Vec<u32> = grid.representatives().collect();
+        let at: Vec<Point> = first.iter().map(|i| cloud.points[*i as usize]).collect();
+        let normal = normals(cloud, &first, NORMAL_RADIUS);
+        let normal = normal.into_iter().map(|n| n.map(|n| n.into_inner())).collect();
+        let mut near = vec![Vec::new(); at.len()];
+        if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, NEIGHBOUR) {
+            for (i, p) in at.iter().enumerate() {
+                cells.within(p, NEIGHBOUR, |j, _| {
+                    if j as usize != i {
+                        near[i].push(j);
+                    }
+                });
+            }
+        }
+        Self { at, normal, near }
+    }
+
+    /// The patch of each voxel, and the patches.
+    fn claim(&self) -> (Vec<u32>, Vec<Patch>) {
+        let mut patches = self.seeds();
+        let mut owners = Vec::new();
+        for _ in 0..ROUNDS {
+            owners = self.grow(&patches);
+            patches = self.means(&owners, &patches);
+        }
+        (owners, patches)
+    }
+
+    /// One seed in each occupied cube of the coarse grid: the voxel next to the middle of what is there.
+    fn seeds(&self) -> Vec<Patch> {
+        let with_normal = (0..self.at.len() as u32).filter(|i| self.normal[*i as usize].is_some());
+        let Some(grid) = VoxelGrid::new(&self.at, with_normal, SEED) else { return Vec::new() };
+        let seed = |members: &[u32]| {
+            let places = || members.iter().map(|i| self.at[*i as usize].coords);
+            let mean = Point::from(places().sum::<Vector>() / members.len() as f64);
+            let away = |i: &&u32| (self.at[**i as usize] - mean).norm_squared();
+            let nearest = members.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+            let i = *nearest as usize;
+            Some(Patch { centre: self.at[i], normal: self.normal[i]?, seed: i })
+        };
+        (0..grid.occupied()).filter_map(|c| seed(grid.members(c))).collect()
+    }
+
+    /// Each voxel's nearest patch among those that reach it.
+    fn grow(&self, patches: &[Patch]) -> Vec<u32> {
+        let mut owners = vec![NOBODY; self.at.len()];
+        let mut far = vec![f64::INFINITY; self.at.len()];
+        let cost = |k: usize, i: usize| {
+            let patch = &patches[k];
+            let turned = self.normal[i].map_or(0.5, |n| 1.0 - n.dot(&patch.normal));
+            (self.at[i] - patch.centre).norm() / SEED + NORMALS * turned
+        };
+        let mut edge: Vec<usize> = Vec::new();
+        for (k, patch) in patches.iter().enumerate() {
+            let i = patch.seed;
+            let c = cost(k, i);
+            if c < far[i] {
+                (far[i], owners[i]) = (c, k as u32);
+                edge.push(i);
+            }
+        }
+        // steps that a patch needs to cross twice its size
+        for _ in 0..(2.0 * SEED / VOXEL) as usize {
+            let mut next = Vec::new();
+            for i in edge {
+                let k = owners[i] as usize;
+                for j in self.near[i].iter().map(|j| *j as usize) {
+                    let c = cost(k, j);
+                    if c < far[j] {
+                        (far[j], owners[j]) = (c, k as u32);
+                        next.push(j);
+                    }
+                }
+            }
+            edge = next;
+        }
+        owners
+    }
+
+    /// The patches by what they claimed; one that claimed nothing stays where it is.
+    fn means(&self, owners: &[u32], patches: &[Patch]) -> Vec<Patch> {
+        let mut sums = vec![(Vector::zeros(), Vector::zeros(), 0.0); patches.len()];
+        for (i, owner) in owners.iter().enumerate() {
+            if let Some((place, normal, count)) = sums.get_mut(*owner as usize) {
+                *place += self.at[i].coords;
+                *normal += self.normal[i].unwrap_or_default();
+                *count += 1.0;
+            }
+        }
+        let mean = |(patch, (place, normal, count)): (&Patch, (Vector, Vector, f64))| {
+            let normal = normal.try_normalize(1e-9).filter(|_| count > 0.0);
+            let centre = Point::from(place / count);
+            normal.map_or(*patch, |normal| Patch { centre, normal, ..*patch })
+        };
+        let mut means: Vec<Patch> = patches.iter().zip(sums).map(mean).collect();
+        let mut nearest = vec![f64::INFINITY; means.len()];
+        for (i, owner) in owners.iter().enumerate() {
+            if let Some(patch) = means.get_mut(*owner as usize) {
+                let away = (self.at[i] - patch.centre).norm_squared();
+                if away < nearest[*owner as usize] {
+                    nearest[*owner as usize] = away;
+                    patch.seed = i;
+                }
+            }
+        }
+        means
+    }
+}
