@@ -5,7 +5,7 @@
 //! - A sliver along an edge belongs to the piece whose surface is nearest.
 //! - Two pieces that one surface explains about as well as their own two do are one thing behind another.
 
-use crate::cloud::PointCloud;
+use crate::cloud::{PointCloud, VoxelGrid};
 use crate::fit::{Fit, FitError};
 use crate::segment::convex_pieces;
 use crate::surface::Surface;
@@ -26,6 +26,8 @@ const BESIDE: f64 = 0.006;
 /// does not matter.
 const WORSE: f64 = 1.8;
 const SLIGHT: f64 = 0.0012;
+/// Pieces that come nearer than this were cut from each other, in metres.
+const CONTACT: f64 = 0.008;
 /// Most pieces of a heap between which joints are tried.
 const MOST: usize = 12;
 
@@ -54,7 +56,9 @@ pub(super) fn parted(
     for points in small {
         add_sliver(cloud, &mut pieces, points, fit_points);
     }
-    while pieces.len() <= MOST && join_best(cloud, &mut pieces, fit_points) {}
+    if pieces.len() <= MOST {
+        pieces = joined(cloud, pieces, fit_points);
+    }
     let count: usize = pieces.iter().map(|p| p.0.len()).sum();
     let residual =
         |(points, fit): &Fitted| points.len() as f64 * fit.as_ref().map_or(before, |f| f.residual);
@@ -83,32 +87,56 @@ fn add_sliver(
     }
 }
 
-/// Joins the two pieces that one surface explains best, if any does; says whether it did.
-fn join_best(
+/// Joins pieces that one surface explains about as well as their own do.
+fn joined(
     cloud: &PointCloud,
-    pieces: &mut Vec<Fitted>,
+    pieces: Vec<Fitted>,
     fit_points: &dyn Fn(&[u32]) -> Result<Fit, FitError>,
-) -> bool {
-    let mut best: Option<(f64, [usize; 2], Fitted)> = None;
-    for b in 1..pieces.len() {
-        for a in 0..b {
-            let (Ok(first), Ok(second)) = (&pieces[a].1, &pieces[b].1) else { continue };
-            let mut points = [&pieces[a].0[..], &pieces[b].0[..]].concat();
-            points.sort_unstable();
-            let Ok(joint) = fit_points(&points) else { continue };
-            let worse = [(a, first), (b, second)].map(|(k, own)| {
-                typical(cloud, &pieces[k].0, &joint) / (WORSE * own.residual).max(SLIGHT)
-            });
-            let worst = worse[0].max(worse[1]);
-            if worst < 1.0 && best.as_ref().is_none_or(|b| worst < b.0) {
-                best = Some((worst, [a, b], (points, Ok(joint))));
-            }
+) -> Vec<Fitted> {
+    let mut out: Vec<Fitted> = Vec::new();
+    for mut piece in pieces {
+        // what a piece joins may join others in turn
+        while let Some((k, joint)) =
+            (0..out.len()).find_map(|k| Some((k, joint(cloud, &out[k], &piece, fit_points)?)))
+        {
+            drop(out.remove(k));
+            piece = joint;
         }
+        out.push(piece);
     }
-    let Some((_, [a, b], joint)) = best else { return false };
-    pieces[a] = joint;
-    drop(pieces.remove(b));
-    true
+    out
+}
+
+/// Both pieces as one, if they are.
+fn joint(
+    cloud: &PointCloud,
+    a: &Fitted,
+    b: &Fitted,
+    fit_points: &dyn Fn(&[u32]) -> Result<Fit, FitError>,
+) -> Option<Fitted> {
+    let (first, second) = (a.1.as_ref().ok()?, b.1.as_ref().ok()?);
+    if touch(cloud, &a.0, &b.0) {
+        return None;
+    }
+    let mut points = [&a.0[..], &b.0[..]].concat();
+    points.sort_unstable();
+    let fit = fit_points(&points).ok()?;
+    let explained = [(&a.0, first), (&b.0, second)]
+        .iter()
+        .all(|(points, own)| typical(cloud, points, &fit) < (WORSE * own.residual).max(SLIGHT));
+    explained.then_some((points, Ok(fit)))
+}
+
+/// Whether two pieces come so near to each other that they meet at an edge.
+fn touch(cloud: &PointCloud, a: &[u32], b: &[u32]) -> bool {
+    let Some(grid) = VoxelGrid::new(&cloud.points, a.iter().copied(), CONTACT) else {
+        return false;
+    };
+    b.iter().any(|i| {
+        let mut near = false;
+        grid.within(&cloud.points[*i as usize], CONTACT, |_, _| near = true);
+        near
+    })
 }
 
 /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points.

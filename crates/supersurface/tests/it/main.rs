@@ -5,5 +5,6 @@ mod golden_antipodal;
 mod golden_shapes;
 mod hit;
 mod picture;
+mod pipeline;
 mod scene;
 mod segment;

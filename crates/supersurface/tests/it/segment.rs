@@ -10,7 +10,7 @@ use supersurface::shape::Plane;
 use supersurface::{Point, Pose, Vector};
 
 /// Something that a ray meets, in the optical frame of the camera; the distance along the ray.
-enum Thing {
+pub(crate) enum Thing {
     /// A plane n·p + d = 0.
     Flat(Plane),
     Ball(Point, f64),
@@ -61,13 +61,22 @@ impl Thing {
 
 const SIZE: [usize; 2] = [320, 240];
 
-/// What a noisy camera sees, and the thing in each pixel.
 fn look(things: &[Thing], seed: u64) -> (PointCloud, Vec<Option<usize>>) {
-    let camera = Camera::new(SIZE, [290.0; 2], [159.5, 119.5]).unwrap();
+    look_by(SIZE, things, seed)
+}
+
+/// What a noisy camera with so many pixels sees, and the thing in each pixel.
+pub(crate) fn look_by(
+    size: [usize; 2],
+    things: &[Thing],
+    seed: u64,
+) -> (PointCloud, Vec<Option<usize>>) {
+    let centre = size.map(|n| 0.5 * (n - 1) as f64);
+    let camera = Camera::new(size, [0.906 * size[0] as f64; 2], centre).unwrap();
     let mut random = Stream::new(seed, 0);
     let (mut depth, mut truth) = (Vec::new(), Vec::new());
-    for i in 0..SIZE[0] * SIZE[1] {
-        let ray = camera.unproject((i % SIZE[0]) as f64, (i / SIZE[0]) as f64);
+    for i in 0..size[0] * size[1] {
+        let ray = camera.unproject((i % size[0]) as f64, (i / size[0]) as f64);
         let hits = things.iter().map(|t| t.hit(&ray)).enumerate();
         let (k, z) = hits.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         let lost = random.uniform() < 0.01 || !z.is_finite();
@@ -75,11 +84,11 @@ fn look(things: &[Thing], seed: u64) -> (PointCloud, Vec<Option<usize>>) {
         depth.push(if lost { f32::NAN } else { noisy as f32 });
         truth.push((!lost).then_some(k));
     }
-    (PointCloud::from_depth(&DepthImage::new(SIZE, depth).unwrap(), &camera), truth)
+    (PointCloud::from_depth(&DepthImage::new(size, depth).unwrap(), &camera), truth)
 }
 
 /// Pose of the table: z up on its surface, seen from 0.8 m by a camera pitched down by `pitch`.
-fn table(pitch: f64) -> Pose {
+pub(crate) fn table(pitch: f64) -> Pose {
     let up = Vector::new(0.0, -pitch.cos(), -pitch.sin());
     let away = Vector::new(0.0, -pitch.sin(), pitch.cos());
     let turn = rotation(&Vector::x(), &away, &up);
