@@ -32,6 +32,13 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     }
     if let Some(text) = &args.viewpoint {
         cloud.viewpoint = viewpoint(text)?;
+    } else if args.segmented && cloud.viewpoint.is_some_and(|eye| surrounds(&cloud, &eye)) {
+        cloud.viewpoint = None;
+        warnings.push(
+            "the frame's origin lies within the object, so no sensor stood there: it is taken as seen from all \
+             around; say --viewpoint X,Y,Z where it was not"
+                .to_owned(),
+        );
     }
     let mut frame = "cloud";
     if let Some(numbers) = &args.camera_pose {
@@ -47,6 +54,15 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     };
     check(&name, &cloud)?;
     Ok(Source { cloud, frame, warnings, objects })
+}
+
+/// Whether a place lies within the box of a cloud.
+fn surrounds(cloud: &PointCloud, place: &Point) -> bool {
+    let finite = cloud.points.iter().filter(|p| p.coords.iter().all(|v| v.is_finite()));
+    let bounds = finite.fold(None, |b: Option<(Point, Point)>, p| {
+        Some(b.map_or((*p, *p), |(low, high)| (low.inf(p), high.sup(p))))
+    });
+    bounds.is_some_and(|(low, high)| (0..3).all(|k| low[k] < place[k] && place[k] < high[k]))
 }
 
 fn check(name: &str, cloud: &PointCloud) -> Result<(), Failure> {

@@ -156,3 +156,17 @@ fn given_objects_are_taken_and_labels_are_not_taken_unasked() {
     let wrong = run_on(&["grasp", "-", "--instances", "nothing"], ply.as_bytes()).ended(3);
     assert!(wrong.stderr.contains("thing"), "the fields are named: {}", wrong.stderr);
 }
+
+#[test]
+fn an_object_around_the_origin_is_taken_as_seen_from_all_around() {
+    let mut cloud = String::new();
+    for i in 0..60 {
+        let (s, c) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
+        for k in 0..30 {
+            let _ = writeln!(cloud, "{} {} {}", 0.03 * c, 0.03 * s, 0.004 * f64::from(k) - 0.058);
+        }
+    }
+    let ran = run_on(&["grasp", "-", "--segmented", "--json"], cloud.as_bytes()).ended(0);
+    assert!(ran.stderr.contains("within the object"), "{}", ran.stderr);
+    assert!(!ran.json()["objects"][0]["grasps"].as_array().unwrap().is_empty());
+}

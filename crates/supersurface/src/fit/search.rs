@@ -27,6 +27,8 @@ const SHORTLIST: usize = 8;
 const KEPT: usize = 3;
 /// Share of points deep inside a convex body from which it may be hollow.
 const HOLLOW: f64 = 0.02;
+/// Share of points left out by a convex body from which it may be hollow.
+const LEFT_OUT: f64 = 0.15;
 /// Share of the lines of sight through a convex body from which it may be hollow.
 const CROSSED: f64 = 0.03;
 /// How far before a seen point nothing is, in normalised lengths.
@@ -219,8 +221,12 @@ impl Normalised {
         quantile(&mut distances, 0.5)
     }
 
-    /// A hole shows itself by points or by free lines of sight that lie deep in the convex body.
+    /// A hole shows itself by points or by free lines of sight that lie deep in the convex body, or by many points
+    /// that it leaves out: half of a ring.
     fn may_be_hollow(&self, h: &Hypothesis) -> bool {
+        if h.mixture.outliers > LEFT_OUT {
+            return true;
+        }
         let deep = -(3.0 * h.mixture.scale).max(0.04);
         let deep_among = |points: &[Vector]| {
             let distances = distances(&h.parameters, points.iter().copied());
