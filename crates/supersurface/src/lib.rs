@@ -48,3 +48,8 @@ pub type Vector = nalgebra::Vector3<f64>;
 pub type Direction = nalgebra::UnitVector3<f64>;
 /// A rigid pose: rotation and translation in metres, local to world.
 pub type Pose = nalgebra::Isometry3<f64>;
+
+/// The README's example runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
