@@ -2,6 +2,7 @@
 //! shape can answer.
 
 mod error;
+mod mass;
 mod plane;
 mod posed;
 mod ray;
@@ -10,9 +11,10 @@ pub mod supertoroid;
 mod traits;
 
 pub use error::InvalidShape;
+pub use mass::Mass;
 pub use plane::Plane;
 pub use posed::Posed;
 pub use ray::Ray;
 pub use superellipsoid::Superellipsoid;
 pub use supertoroid::Supertoroid;
-pub use traits::{Implicit, Parametric, SupportMap};
+pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};

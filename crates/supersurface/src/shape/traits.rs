@@ -1,17 +1,22 @@
 //! What a shape can answer. Each trait is implemented only where the mathematics allows.
 
+use nalgebra::Matrix3;
+
+use crate::shape::Mass;
 use crate::{Direction, Point, Vector};
 
 /// A solid given by a gauge: below 1 inside, 1 on the surface, above 1 outside.
 pub trait Implicit {
     /// The gauge at a point (FORMULAS §0.1). For a superellipsoid it is 1-homogeneous; for a
-    /// supertoroid it is the gauge of the cross-section. Never NaN for finite points.
+    /// supertoroid it is the gauge of the cross-section. Never NaN for finite points; infinite where a
+    /// point is outside of everything that the form can say.
     fn gauge(&self, p: &Point) -> f64;
 
     /// Gradient of the gauge, in 1/m. Zero where it is not defined (centre, axis of a toroid).
     fn gradient(&self, p: &Point) -> Vector;
 
-    /// Corners of an axis-aligned box (lowest, highest) that contains the solid, in metres.
+    /// Corners of an axis-aligned box (lowest, highest) that contains the solid, in metres; infinite where
+    /// the solid is not bounded.
     fn bounds(&self) -> [Point; 2];
 
     /// True when the gauge is a convex function of the point, so that a ray meets the solid in one
@@ -32,10 +37,23 @@ pub trait Implicit {
     }
 }
 
+/// A gauge with second derivatives.
+pub trait SecondOrder: Implicit {
+    /// Second derivatives of the gauge, in 1/m², symmetric; `None` where they do not exist or are infinite.
+    fn hessian(&self, p: &Point) -> Option<Matrix3<f64>>;
+}
+
 /// A surface given by two angles: `eta` along the meridian, `omega` around z, in radians.
 pub trait Parametric {
+    /// Ranges `[[η from, η to], [ω from, ω to]]` in which the angles cover the surface once.
+    fn domain(&self) -> [[f64; 2]; 2];
+
     /// Surface point at the two angles.
     fn point(&self, eta: f64, omega: f64) -> Point;
+
+    /// Derivatives of the point by `eta` and by `omega`, in metres per radian; `None` where one is infinite or
+    /// does not exist (seams, for exponents under 1).
+    fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]>;
 
     /// Outward unit normal; `None` where there is none (edges and cusps, exponents from 2).
     fn normal(&self, eta: f64, omega: f64) -> Option<Direction>;
@@ -46,4 +64,15 @@ pub trait SupportMap {
     /// A point of the body that lies farthest along `n` (any length; the zero vector gives any
     /// point). Metres.
     fn support_point(&self, n: &Vector) -> Point;
+
+    /// The support function `h(n) = max n·x`: the distance of the tangent plane times `|n|`.
+    fn support(&self, n: &Vector) -> f64 {
+        n.dot(&self.support_point(n).coords)
+    }
+}
+
+/// A solid whose volume and moments are known.
+pub trait MassProperties {
+    /// Mass, centre of mass and inertia for a uniform density in kg/m³.
+    fn mass_properties(&self, density: f64) -> Mass;
 }

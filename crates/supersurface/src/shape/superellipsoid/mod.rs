@@ -7,7 +7,7 @@
 mod gauge;
 mod mass;
 mod parametric;
-pub(crate) use parametric::angular_normal;
+pub(crate) use parametric::{angular_normal, angular_tangents};
 mod support;
 
 use crate::shape::InvalidShape;

@@ -1,12 +1,18 @@
 //! Parametric form and normal (equation 11 and FORMULAS §6).
 
+use std::f64::consts::PI;
+
 use super::Supertoroid;
 use crate::numeric::powers::{quadrant_cos_sin, signed_power};
 use crate::shape::Parametric;
-use crate::shape::superellipsoid::angular_normal;
-use crate::{Direction, Point};
+use crate::shape::superellipsoid::{angular_normal, angular_tangents};
+use crate::{Direction, Point, Vector};
 
 impl Parametric for Supertoroid {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-PI, PI]; 2]
+    }
+
     /// `(a1 (a4 + cos^ε1 η) cos^ε2 ω, a2 (a4 + cos^ε1 η) sin^ε2 ω, a3 sin^ε1 η)`; η, ω in [-π, π).
     fn point(&self, eta: f64, omega: f64) -> Point {
         let [a1, a2, a3] = self.semi_axes;
@@ -15,6 +21,10 @@ impl Parametric for Supertoroid {
         let r = self.ring_ratio + signed_power(ce, e1);
         let (x, y) = (signed_power(co, e2), signed_power(so, e2));
         Point::new(a1 * r * x, a2 * r * y, a3 * signed_power(se, e1))
+    }
+
+    fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
+        angular_tangents(self.semi_axes, self.ring_ratio, self.exponents, eta, omega)
     }
 
     fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
