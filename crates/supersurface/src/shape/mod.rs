@@ -1,6 +1,7 @@
 //! Floor 2: the members of the family, each with its closed forms, and the traits that say what a
 //! shape can answer.
 
+mod curvature;
 mod error;
 mod mass;
 mod plane;
@@ -10,6 +11,7 @@ pub mod superellipsoid;
 pub mod supertoroid;
 mod traits;
 
+pub use curvature::{Curvature, FundamentalForms};
 pub use error::InvalidShape;
 pub use mass::Mass;
 pub use plane::Plane;
