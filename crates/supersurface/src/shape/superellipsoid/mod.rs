@@ -10,7 +10,12 @@ mod hessian;
 mod implicit_value;
 mod mass;
 mod parametric;
+mod radial;
+mod radial_columns;
 mod support;
+
+pub use radial::PARAMETERS;
+pub use radial_columns::{Columns, Jacobians};
 
 pub(crate) use curvature::Angular;
 pub(crate) use hessian::layered;
