@@ -196,10 +196,10 @@ impl Stages {
     }
 
     #[inline(always)]
-    fn run<const FUSED: bool>(&mut self, k: &Constants, p: [&Lanes; 3]) {
+    fn run<const FUSED: bool>(&mut self, k: &Constants, [x, y, z]: [&Lanes; 3]) {
         for j in 0..3 {
             for i in 0..BLOCK {
-                let d = [p[0][i] - k.t[0], p[1][i] - k.t[1], p[2][i] - k.t[2]];
+                let d = [x[i] - k.t[0], y[i] - k.t[1], z[i] - k.t[2]];
                 let q = off_plane(dot::<FUSED>([k.r[0][j], k.r[1][j], k.r[2][j]], d));
                 let inverse = 1.0 / q;
                 self.q[j][i] = q;
