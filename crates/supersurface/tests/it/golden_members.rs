@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use supersurface::shape::{
-    Implicit, MassProperties, Parametric, Sheet, Supercone, Supercylinder,
+    Implicit, MassProperties, Parametric, Quadric, Sheet, Supercone, Supercylinder,
     SuperhyperboloidOneSheet, SuperhyperboloidTwoSheets, Superparaboloid,
 };
 use supersurface::{Point, Vector};
@@ -103,4 +103,32 @@ fn golden_supercylinder_supercone() {
         cases += 1;
     }
     assert!(cases >= 8, "{cases} cases");
+}
+
+#[test]
+fn golden_quadric() {
+    let mut cases = 0;
+    for case in golden("quadric")["cases"].as_array().unwrap() {
+        let q = Quadric::new(numbers(&case["coeffs_ABCDEFGHIJ"]).unwrap()).unwrap();
+        let form = q.normal_form();
+        assert_eq!(form.kind.name(), case["type"].as_str().unwrap(), "{form:?}");
+        assert_eq!(form.rank as u64, case["rank"].as_u64().unwrap());
+        near_vector(&Vector::from(form.eigenvalues), case, "eigenvalues_sorted", 1e-10);
+        match form.centre() {
+            Some(c) if c.coords.norm() > 1e-9 => near_vector(&c.coords, case, "center", 1e-10),
+            Some(_) => assert_eq!(numbers::<3>(&case["center"]), Some([0.0; 3])),
+            None => assert!(case["center"].is_null()),
+        }
+        if !case["semi_axes_sorted_desc"].is_null() {
+            let mut axes = form.semi_axes().map(Option::unwrap);
+            axes.sort_by(|a, b| b.total_cmp(a));
+            near_vector(&Vector::from(axes), case, "semi_axes_sorted_desc", 1e-10);
+        }
+        assert_eq!(q.as_ellipsoid().is_some(), case["type"] == "ellipsoid");
+        // the equation times -1 is the same quadric
+        let turned = Quadric::new(q.coefficients().map(|v| -v)).unwrap().normal_form();
+        assert_eq!(turned.kind, form.kind);
+        cases += 1;
+    }
+    assert!(cases >= 51, "{cases} cases");
 }
