@@ -137,7 +137,7 @@ mod tests {
             checks::derivatives(&s, checks::points([0.0; 3], [0.6; 3], 200));
             checks::extremes(&s);
             checks::support(&s);
-            checks::mass(&s, 1e-2);
+            checks::mass(&s, 4e-3);
         }
         checks::extremes(&Supercylinder::new([1e-300, 5e-324, 1e300], 0.01).unwrap());
     }
