@@ -1,13 +1,23 @@
 //! Floor 2: the members of the family, each with its closed forms, and the traits that say what a
 //! shape can answer.
 
+mod angular;
+#[cfg(test)]
+mod checks;
 mod curvature;
 mod error;
+mod jet;
 mod mass;
 mod plane;
 mod posed;
+pub mod quadric;
 mod ray;
+pub mod separable_superquadric;
+pub mod supercone;
+pub mod supercylinder;
 pub mod superellipsoid;
+pub mod superhyperboloid;
+pub mod superparaboloid;
 pub mod supertoroid;
 mod traits;
 
@@ -16,7 +26,13 @@ pub use error::InvalidShape;
 pub use mass::Mass;
 pub use plane::Plane;
 pub use posed::Posed;
+pub use quadric::{NormalForm, Quadric, QuadricType};
 pub use ray::Ray;
+pub use separable_superquadric::SeparableSuperquadric;
+pub use supercone::Supercone;
+pub use supercylinder::Supercylinder;
 pub use superellipsoid::Superellipsoid;
+pub use superhyperboloid::{Sheet, SuperhyperboloidOneSheet, SuperhyperboloidTwoSheets};
+pub use superparaboloid::Superparaboloid;
 pub use supertoroid::Supertoroid;
 pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};
