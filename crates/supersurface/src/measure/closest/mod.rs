@@ -140,7 +140,7 @@ fn search(chart: &Chart, grid: &Grid, p: &Vector, best: &mut Option<Minimum>) {
     // a cell that could be nearer and that no search has come by
     for cell in 0..bounds.least.len() {
         let near = |c: &usize| *c == cell || neighbours(cell).any(|n| n == *c);
-        if worth(bounds.least[cell], best) && !followed.iter().any(|c| near(c)) {
+        if worth(bounds.least[cell], best) && !followed.iter().any(near) {
             follow(grid.place(cell), best, &mut followed);
             followed.push(cell);
         }
