@@ -3,4 +3,6 @@
 pub mod lanes;
 pub mod powers;
 pub mod random;
+pub mod spline;
 pub mod superellipse;
+pub mod tanh_sinh;

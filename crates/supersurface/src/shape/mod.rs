@@ -7,6 +7,7 @@ mod plane;
 mod posed;
 mod ray;
 pub mod superellipsoid;
+pub mod superformula;
 pub mod supertoroid;
 mod traits;
 
@@ -16,5 +17,6 @@ pub use plane::Plane;
 pub use posed::Posed;
 pub use ray::Ray;
 pub use superellipsoid::Superellipsoid;
+pub use superformula::{Superformula, Supershape};
 pub use supertoroid::Supertoroid;
 pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};

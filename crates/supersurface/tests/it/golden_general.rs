@@ -1,0 +1,46 @@
+//! The generalised members and R-functions against reference values with 50 digits behind them.
+
+use std::f64::consts::PI;
+
+use serde_json::Value;
+use supersurface::shape::{Implicit, Parametric, Superformula, Supershape};
+
+use crate::golden_shapes::{close, close_vector, golden, numbers, point};
+
+/// Relative to the value itself.
+fn relative(name: &str, value: f64, truth: &Value, tolerance: f64) {
+    close(name, value, truth, tolerance * value.abs());
+}
+
+fn curve([m, n1, n2, n3, a, b]: [f64; 6]) -> Superformula {
+    Superformula::new(m, [n1, n2, n3], [a, b]).unwrap()
+}
+
+#[test]
+fn golden_superformula() {
+    let data = golden("general");
+    let mut cases = 0;
+    for case in data["superformula"].as_array().unwrap() {
+        let params = ["m", "n1", "n2", "n3", "a", "b"].map(|k| case["params"][k].as_f64().unwrap());
+        let phi = case["phi"].as_f64().unwrap();
+        relative("r", curve(params).radius(phi), &case["r"], 1e-11);
+        cases += 1;
+    }
+    for case in data["supershape3d"].as_array().unwrap() {
+        let (lon, lat) = (numbers(&case["lon"]).unwrap(), numbers(&case["lat"]).unwrap());
+        let shape = Supershape::new(curve(lon), curve(lat)).unwrap();
+        let (theta, phi) = (case["theta"].as_f64().unwrap(), case["phi"].as_f64().unwrap());
+        let p = shape.point(phi, theta);
+        close_vector("point", &p.coords, &case["point"], 1e-11);
+        assert!((shape.gauge(&p) - 1.0).abs() < 1e-11);
+        let q = point(&case["q"]);
+        relative("beta", shape.radial_scale(&q).unwrap(), &case["q_beta"], 1e-11);
+        let reach = q.coords.norm().max(1.0);
+        close("radial", shape.radial_distance(&q), &case["q_radial"], 1e-11 * reach);
+        let [low, high] = shape.bounds();
+        assert!((0..3).all(|k| p[k] >= low[k] && p[k] <= high[k]));
+        cases += 1;
+    }
+    assert!(cases >= 65, "{cases} cases");
+    assert!((curve([4.0, 2.0, 2.0, 2.0, 1.0, 1.0]).radius(PI) - 1.0).abs() < 1e-15);
+}
