@@ -2,6 +2,7 @@
 //! shape can answer.
 
 mod error;
+pub mod hyperquadric;
 mod mass;
 mod plane;
 mod posed;
@@ -12,6 +13,7 @@ pub mod supertoroid;
 mod traits;
 
 pub use error::InvalidShape;
+pub use hyperquadric::{Hyperquadric, HyperquadricForm};
 pub use mass::Mass;
 pub use plane::Plane;
 pub use posed::Posed;

@@ -3,7 +3,9 @@
 use std::f64::consts::PI;
 
 use serde_json::Value;
-use supersurface::shape::{Implicit, Parametric, Superformula, Supershape};
+use supersurface::shape::{
+    Hyperquadric, HyperquadricForm, Implicit, Parametric, Superformula, Supershape,
+};
 
 use crate::golden_shapes::{close, close_vector, golden, numbers, point};
 
@@ -43,4 +45,33 @@ fn golden_superformula() {
     }
     assert!(cases >= 65, "{cases} cases");
     assert!((curve([4.0, 2.0, 2.0, 2.0, 1.0, 1.0]).radius(PI) - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn golden_hyperquadric() {
+    let data = golden("general");
+    let mut cases = 0;
+    for case in data["hyperquadric"].as_array().unwrap() {
+        let list = |v: &Value| -> Vec<f64> {
+            v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+        };
+        let planes: Vec<[f64; 4]> =
+            case["planes"].as_array().unwrap().iter().map(|row| numbers(row).unwrap()).collect();
+        let form = HyperquadricForm::new(&planes, &list(&case["exponents"])).unwrap();
+        let p = point(&case["p"]);
+        let value = form.value(&p);
+        relative("F", value, &case["F"], 1e-11);
+        close_vector("grad F", &form.gradient(&p).unwrap(), &case["grad_F"], 1e-11);
+        // the solid's gauge tells the same side, and its box holds the point if it is inside
+        let Ok(solid) = Hyperquadric::from_form(form) else {
+            assert!(value >= 1.0, "not empty: {case}");
+            cases += 1;
+            continue;
+        };
+        assert_eq!(solid.contains(&p), value <= 1.0);
+        let [low, high] = solid.bounds();
+        assert!(value > 1.0 || (0..3).all(|k| p[k] >= low[k] && p[k] <= high[k]));
+        cases += 1;
+    }
+    assert!(cases >= 25, "{cases} cases");
 }
