@@ -2,6 +2,7 @@
 //! shape can answer.
 
 mod error;
+pub mod extended;
 pub mod hyperquadric;
 mod mass;
 mod plane;
@@ -13,6 +14,7 @@ pub mod supertoroid;
 mod traits;
 
 pub use error::InvalidShape;
+pub use extended::{ExtendedSuperellipsoid, RadialExtended};
 pub use hyperquadric::{Hyperquadric, HyperquadricForm};
 pub use mass::Mass;
 pub use plane::Plane;

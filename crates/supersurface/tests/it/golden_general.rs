@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use serde_json::Value;
 use supersurface::shape::{
-    Hyperquadric, HyperquadricForm, Implicit, Parametric, Superformula, Supershape,
+    ExtendedSuperellipsoid, Hyperquadric, HyperquadricForm, Implicit, Parametric, Superformula,
+    Supershape,
 };
 
 use crate::golden_shapes::{close, close_vector, golden, numbers, point};
@@ -74,4 +75,34 @@ fn golden_hyperquadric() {
         cases += 1;
     }
     assert!(cases >= 25, "{cases} cases");
+}
+
+#[test]
+fn golden_extended() {
+    let data = golden("general");
+    let mut cases = 0;
+    for case in data["extended"].as_array().unwrap() {
+        let list = |v: &Value| -> Vec<f64> {
+            v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+        };
+        let (profile, section) = (list(&case["eta_knot_values"]), list(&case["omega_knot_values"]));
+        let axes = numbers(&case["a"]).unwrap();
+        let parametric = ExtendedSuperellipsoid::new(axes, &profile, &section).unwrap();
+        let radial = parametric.clone().radial();
+        for sample in case["samples"].as_array().unwrap() {
+            let angle = |name: &str| sample[name].as_f64().unwrap();
+            let (eta, omega) = (angle("eta"), angle("omega"));
+            let [f1, f2] = parametric.exponents(eta, omega);
+            relative("f1", f1, &sample["f1"], 1e-11);
+            relative("f2", f2, &sample["f2"], 1e-11);
+            close_vector("point", &parametric.point(eta, omega).coords, &sample["point"], 1e-11);
+            let q = point(&sample["q"]);
+            let [g1, g2] = radial.exponents_at(&q);
+            relative("q_f1", g1, &sample["q_f1"], 1e-11);
+            relative("q_f2", g2, &sample["q_f2"], 1e-11);
+            relative("q_beta", radial.radial_scale(&q).unwrap(), &sample["q_beta"], 1e-11);
+            cases += 1;
+        }
+    }
+    assert!(cases >= 64, "{cases} cases");
 }
