@@ -4,4 +4,6 @@ pub mod dirichlet;
 pub mod lanes;
 pub mod powers;
 pub mod random;
+pub mod spline;
 pub mod superellipse;
+pub mod tanh_sinh;

@@ -33,7 +33,7 @@ fn toroid(case: &Value) -> Supertoroid {
     Supertoroid::new([a, b, c], ring, numbers(&case["e"]).unwrap()).unwrap()
 }
 
-fn point(v: &Value) -> Point {
+pub(crate) fn point(v: &Value) -> Point {
     Point::from(numbers::<3>(v).unwrap())
 }
 
@@ -44,13 +44,13 @@ fn angle(v: &Value) -> f64 {
     })
 }
 
-fn close(name: &str, value: f64, truth: &Value, tolerance: f64) {
+pub(crate) fn close(name: &str, value: f64, truth: &Value, tolerance: f64) {
     let Some(truth) = truth.as_f64() else { return };
     assert!((value - truth).abs() <= tolerance, "{name}: {value} against {truth}");
 }
 
 /// Components that are `null` do not exist at that point.
-fn close_vector(name: &str, value: &Vector, truth: &Value, relative: f64) {
+pub(crate) fn close_vector(name: &str, value: &Vector, truth: &Value, relative: f64) {
     let list = truth.as_array().unwrap();
     let largest = list.iter().filter_map(Value::as_f64).fold(0.0f64, |m, v| m.max(v.abs()));
     for (v, t) in value.iter().zip(list) {

@@ -3,6 +3,7 @@
 mod closest;
 mod floors;
 mod golden_antipodal;
+mod golden_general;
 mod golden_members;
 mod golden_shapes;
 mod hit;
