@@ -19,6 +19,19 @@ pub trait Implicit {
     /// the solid is not bounded.
     fn bounds(&self) -> [Point; 2];
 
+    /// An upper bound of `n·x` over the solid, in metres times `|n|`: the support function where the shape knows
+    /// it, otherwise that of the box of [`bounds`](Self::bounds).
+    fn extent(&self, n: &Vector) -> f64 {
+        let [low, high] = self.bounds();
+        let along = |n: f64, low: f64, high: f64| match n.partial_cmp(&0.0) {
+            Some(std::cmp::Ordering::Greater) => n * high,
+            Some(std::cmp::Ordering::Less) => n * low,
+            // also where the box is infinite
+            _ => 0.0,
+        };
+        along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z)
+    }
+
     /// True when the gauge is a convex function of the point, so that a ray meets the solid in one
     /// interval. `false` promises nothing.
     fn is_convex(&self) -> bool {
@@ -30,10 +43,15 @@ pub trait Implicit {
         self.gauge(p) <= 1.0
     }
 
-    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside.
+    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside; infinite with the sign of
+    /// `g - 1` where there is no gradient.
     fn first_order_distance(&self, p: &Point) -> f64 {
-        let gradient = self.gradient(p).norm();
-        if gradient > 0.0 { (self.gauge(p) - 1.0) / gradient } else { f64::NEG_INFINITY }
+        let (gradient, gauge) = (self.gradient(p).norm(), self.gauge(p));
+        match gradient > 0.0 {
+            true => (gauge - 1.0) / gradient,
+            false if gauge > 1.0 => f64::INFINITY,
+            false => f64::NEG_INFINITY,
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod floors;
 mod golden_antipodal;
+mod golden_deform;
 mod golden_shapes;
 mod hit;
 mod picture;
