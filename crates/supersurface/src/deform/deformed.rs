@@ -6,7 +6,7 @@
 use nalgebra::Matrix3;
 
 use super::Deformation;
-use crate::shape::{Implicit, InvalidShape, Parametric};
+use crate::shape::{Implicit, InvalidShape, Parametric, box_extent};
 use crate::{Direction, Point, Vector};
 
 /// A shape whose points a deformation has moved, in the same frame.
@@ -83,15 +83,7 @@ impl<S: Implicit, D: Deformation> Implicit for Deformed<S, D> {
     }
 
     fn extent(&self, n: &Vector) -> f64 {
-        let [low, high] = self.bounds;
-        let along = |n: f64, low: f64, high: f64| match n.partial_cmp(&0.0) {
-            Some(std::cmp::Ordering::Greater) => n * high,
-            Some(std::cmp::Ordering::Less) => n * low,
-            _ => 0.0,
-        };
-        let corner =
-            along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z);
-        self.deformation.extent_over(&self.shape, n).min(corner)
+        self.deformation.extent_over(&self.shape, n).min(box_extent(&self.bounds, n))
     }
 }
 

@@ -17,4 +17,5 @@ pub use posed::Posed;
 pub use ray::Ray;
 pub use superellipsoid::Superellipsoid;
 pub use supertoroid::Supertoroid;
+pub(crate) use traits::box_extent;
 pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};

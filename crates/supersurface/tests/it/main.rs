@@ -3,6 +3,7 @@
 mod floors;
 mod golden_antipodal;
 mod golden_deform;
+mod golden_sampling;
 mod golden_shapes;
 mod hit;
 mod picture;
