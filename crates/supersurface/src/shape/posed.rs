@@ -65,6 +65,11 @@ impl<S: Implicit> Implicit for Posed<S> {
         [centre - extent, centre + extent]
     }
 
+    fn extent(&self, n: &Vector) -> f64 {
+        let local = self.pose.rotation.inverse_transform_vector(n);
+        n.dot(&self.pose.translation.vector) + self.shape.extent(&local)
+    }
+
     fn is_convex(&self) -> bool {
         self.shape.is_convex()
     }

@@ -1,5 +1,7 @@
 //! What a shape can answer. Each trait is implemented only where the mathematics allows.
 
+use std::cmp::Ordering;
+
 use nalgebra::Matrix3;
 
 use crate::shape::Mass;
@@ -18,6 +20,12 @@ pub trait Implicit {
     /// Corners of an axis-aligned box (lowest, highest) that contains the solid, in metres; infinite where
     /// the solid is not bounded.
     fn bounds(&self) -> [Point; 2];
+
+    /// An upper bound of `n·x` over the solid, in metres times `|n|`: the support function where the shape knows
+    /// it, otherwise that of the box of [`bounds`](Self::bounds).
+    fn extent(&self, n: &Vector) -> f64 {
+        box_extent(&self.bounds(), n)
+    }
 
     /// True when the gauge is a convex function of the point, so that a ray meets the solid in one
     /// interval. `false` promises nothing.
@@ -42,6 +50,17 @@ pub trait Implicit {
             false => f64::INFINITY.copysign(excess),
         }
     }
+}
+
+/// The support function of a box (lowest, highest corner), which may be infinite.
+pub(crate) fn box_extent([low, high]: &[Point; 2], n: &Vector) -> f64 {
+    let along = |n: f64, low: f64, high: f64| match n.partial_cmp(&0.0) {
+        Some(Ordering::Greater) => n * high,
+        Some(Ordering::Less) => n * low,
+        // also where the box is infinite
+        _ => 0.0,
+    };
+    along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z)
 }
 
 /// A gauge with second derivatives.
