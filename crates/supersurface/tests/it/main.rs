@@ -5,6 +5,7 @@ mod floors;
 mod golden_antipodal;
 mod golden_deform;
 mod golden_general;
+mod golden_jacobian;
 mod golden_members;
 mod golden_sampling;
 mod golden_shapes;
