@@ -10,6 +10,7 @@
 //! | 2 | [`shape`] | the shapes: gauge, gradient, parametric points, support points, volume |
 //! | 3 | [`measure`], [`camera`] | first hit of a ray; pinhole cameras and depth images |
 //! | 5 | [`surface`] | the closed family as one type, for files and programs |
+//! | 6 | [`combine`] | Boolean trees of solids; parts joined to an assembly |
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
 //! | 7 | [`segment`], [`fit`] | table plane and objects; one supersurface per object |
 //! | 8 | [`grasp`], [`scene`] | ranked grasps; scenes seen by a simulated depth camera |
@@ -29,6 +30,7 @@ pub use nalgebra;
 
 pub mod camera;
 pub mod cloud;
+pub mod combine;
 pub mod fit;
 pub mod grasp;
 pub mod measure;
