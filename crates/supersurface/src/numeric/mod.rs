@@ -1,5 +1,6 @@
 //! Floor 1: the small mathematics that every shape is made of.
 
+pub mod dirichlet;
 pub mod lanes;
 pub mod powers;
 pub mod random;
