@@ -1,5 +1,6 @@
 //! Integration tests of the library, one binary.
 
+mod assembly;
 mod closest;
 mod floors;
 mod golden_antipodal;
