@@ -6,6 +6,7 @@
 //! | camera intrinsics (JSON) | in | [`read_camera`] |
 //! | instance mask (PNG) | in | [`read_mask`] |
 //! | gripper (TOML) | in | [`read_gripper`] |
+//! | shape (JSON) | in | [`read_shape`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
@@ -31,6 +32,7 @@ mod pcd;
 mod ply;
 mod read;
 mod report_json;
+mod shape_json;
 mod text;
 mod write;
 
@@ -42,4 +44,5 @@ pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
 pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
+pub use shape_json::{Model, parse_shape, read_shape};
 pub use write::write_png;
