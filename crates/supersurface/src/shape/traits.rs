@@ -38,14 +38,16 @@ pub trait Implicit {
         self.gauge(p) <= 1.0
     }
 
-    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside; infinite with the sign of
-    /// `g - 1` where there is no gradient.
+    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside. Infinite with the
+    /// sign of `g - 1` where there is no gradient.
     fn first_order_distance(&self, p: &Point) -> f64 {
-        let (gradient, gauge) = (self.gradient(p).norm(), self.gauge(p));
-        match gradient > 0.0 {
-            true => (gauge - 1.0) / gradient,
-            false if gauge > 1.0 => f64::INFINITY,
-            false => f64::NEG_INFINITY,
+        let (excess, gradient) = (self.gauge(p) - 1.0, self.gradient(p));
+        let largest = gradient.amax();
+        match largest > 0.0 {
+            // in this order no square overflows
+            true => excess / largest / (gradient / largest).norm(),
+            false if excess == 0.0 => 0.0,
+            false => f64::INFINITY.copysign(excess),
         }
     }
 }

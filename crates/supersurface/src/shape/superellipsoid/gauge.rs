@@ -1,4 +1,4 @@
-//! Implicit form: gauge, gradient and radial distance (equations 9, 26 to 29).
+//! Implicit form: gauge and gradient (equation 9, FORMULAS §0.1).
 
 use super::Superellipsoid;
 use crate::numeric::superellipse::{norm, weighted};
@@ -43,26 +43,5 @@ impl Implicit for Superellipsoid {
     /// Both norms are convex for exponents up to 2, and the outer one grows with the inner one.
     fn is_convex(&self) -> bool {
         self.exponents.iter().all(|e| *e <= 2.0)
-    }
-}
-
-impl Superellipsoid {
-    /// Signed radial distance `|p| (1 - 1/g)` in metres, positive outside (equations 27 to 29 with
-    /// `β = 1/g`). At the centre it is minus the least semi-axis.
-    ///
-    /// ```
-    /// use supersurface::{Point, shape::Superellipsoid};
-    /// let ball = Superellipsoid::new([2.0; 3], [1.0, 1.0])?;
-    /// assert!((ball.radial_distance(&Point::new(0.0, 3.0, 4.0)) - 3.0).abs() < 1e-14);
-    /// # Ok::<(), supersurface::shape::InvalidShape>(())
-    /// ```
-    #[inline]
-    pub fn radial_distance(&self, p: &Point) -> f64 {
-        let g = self.gauge(p);
-        if g == 0.0 {
-            let [a, b, c] = self.semi_axes;
-            return -a.min(b).min(c);
-        }
-        p.coords.norm() * (1.0 - 1.0 / g)
     }
 }

@@ -4,11 +4,23 @@
 //! Everything is evaluated through the gauge `g = F^(ε1/2)`, which is 1-homogeneous and does not
 //! overflow (FORMULAS §0.1).
 
+mod curvature;
 mod gauge;
+mod hessian;
+mod implicit_value;
 mod mass;
 mod parametric;
-pub(crate) use parametric::{angular_normal, angular_tangents};
+mod radial;
+mod radial_columns;
 mod support;
+
+pub use radial::PARAMETERS;
+pub use radial_columns::{Columns, Jacobians};
+
+pub(crate) use curvature::Angular;
+pub(crate) use hessian::layered;
+pub(crate) use mass::{central, raised, section_moment};
+pub(crate) use parametric::{angular_normal, angular_tangents};
 
 use crate::shape::InvalidShape;
 

@@ -1,10 +1,15 @@
-//! Volume in closed form (FORMULAS §3, moments of the supertoroid).
+//! Volume, moments and inertia in closed form (FORMULAS §3), for `a4 >= 1`.
+//!
+//! With m = i + j + 1: `M(i,j,k) = 8 a1^(i+1) a2^(j+1) a3^(k+1) D2(ε2; i, j) (i+j+2)
+//! Σ_{l even <= m} C(m, l) a4^(m-l) ε1/(k+1) B((l+1) ε1/2, (k+1) ε1/2 + 1)` for even i, j, k.
 
 use super::Supertoroid;
 use crate::numeric::powers::beta;
+use crate::shape::superellipsoid::{central, raised, section_moment};
+use crate::shape::{Mass, MassProperties};
 
 impl Supertoroid {
-    /// Volume in m³: the area of the mean superellipse's family times the section's, for `a4 >= 1`.
+    /// Volume in m³.
     ///
     /// ```
     /// use supersurface::shape::Supertoroid;
@@ -14,11 +19,35 @@ impl Supertoroid {
     /// # Ok::<(), supersurface::shape::InvalidShape>(())
     /// ```
     pub fn volume(&self) -> f64 {
+        self.moment([0; 3])
+    }
+
+    /// The moment `∫ x^i y^j z^k dV` of the solid about its centre, in m^(3+i+j+k).
+    pub fn moment(&self, [i, j, k]: [u32; 3]) -> f64 {
+        if i % 2 + j % 2 + k % 2 > 0 {
+            return 0.0;
+        }
         let [a1, a2, a3] = self.semi_axes;
         let [e1, e2] = self.exponents;
-        // M(0,0,0) = 8 a1 a2 a3 D2(ε2; 0, 0) 2 a4 ε1 B(ε1/2, ε1/2 + 1)
-        let section = e2 * e2 / 4.0 * beta(0.5 * e2, 0.5 * e2) / e2;
-        let tube = e1 * beta(0.5 * e1, 0.5 * e1 + 1.0);
-        16.0 * a1 * a2 * a3 * section * self.ring_ratio * tube
+        let m = i + j + 1;
+        let size = raised(a1, i + 1) * raised(a2, j + 1) * raised(a3, k + 1);
+        let height = f64::from(k + 1);
+        let mut binomial = 1.0;
+        let mut sum = 0.0;
+        for l in 0..=m {
+            if l % 2 == 0 {
+                let section = beta(0.5 * f64::from(l + 1) * e1, 0.5 * height * e1 + 1.0);
+                sum += binomial * raised(self.ring_ratio, m - l) * e1 / height * section;
+            }
+            binomial *= f64::from(m - l) / f64::from(l + 1);
+        }
+        8.0 * size * section_moment(e2, [i, j]) * f64::from(i + j + 2) * sum
+    }
+}
+
+impl MassProperties for Supertoroid {
+    fn mass_properties(&self, density: f64) -> Mass {
+        let second = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|powers| self.moment(powers));
+        central(density, self.volume(), second)
     }
 }

@@ -4,7 +4,10 @@
 //! (equation 12). `a4 >= 1` is the dimensionless ring ratio: a torus of radii R and r has
 //! `a1 = a2 = a3 = r` and `a4 = R/r`.
 
+mod curvature;
 mod gauge;
+mod hessian;
+mod implicit_value;
 mod mass;
 mod meridian;
 mod parametric;
