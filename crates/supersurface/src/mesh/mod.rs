@@ -10,15 +10,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod angle_grid;
+mod chords;
 mod equal_arc;
-mod grid;
 mod sample;
-
 mod tessellate;
 mod triangles;
 
 pub use equal_arc::{SuperellipseArc, pilu_fisher, pilu_fisher_step};
-
 pub use sample::{SurfacePoint, SurfaceSampler};
 pub use tessellate::{TessellateError, Tessellation, tessellate};
 pub use triangles::{Mesh, MeshSampler};
