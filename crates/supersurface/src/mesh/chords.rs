@@ -16,10 +16,11 @@ pub(super) fn middle(curve: &impl Fn(f64) -> Point, from: f64, to: f64) -> f64 {
     part(curve, from, to, 1.0)
 }
 
-/// A parameter whose point is about `ratio` times as far from the point at `from` as from that at `to`.
+/// A parameter whose point is about `ratio` (up to 1) times as far from the point at `from` as from that at `to`.
 fn part(curve: &impl Fn(f64) -> Point, from: f64, to: f64, ratio: f64) -> f64 {
     let (a, b) = (curve(from), curve(to));
-    let enough = 0.05 * (b - a).norm_squared() * ratio;
+    // 3 % of the part
+    let enough = 0.06 * ratio * ratio / (1.0 + ratio) * (b - a).norm_squared();
     let (mut low, mut high) = (from, to);
     loop {
         let m = 0.5 * (low + high);
@@ -36,17 +37,36 @@ fn part(curve: &impl Fn(f64) -> Point, from: f64, to: f64, ratio: f64) -> f64 {
     }
 }
 
+/// Both ends, and parameters that part an interval in about equal parts between them.
+fn parts(curve: &impl Fn(f64) -> Point, from: f64, to: f64, count: u32) -> Vec<f64> {
+    let mut ends = vec![from];
+    for left in (1..count).rev() {
+        let last = ends.last().copied().unwrap_or(from);
+        ends.push(part(curve, last, to, 1.0 / f64::from(left)));
+    }
+    ends.push(to);
+    ends
+}
+
 /// Three parameters that part an interval in about equal quarters.
 pub(super) fn quarters(curve: &impl Fn(f64) -> Point, from: f64, to: f64) -> [f64; 3] {
     let m = middle(curve, from, to);
     [middle(curve, from, m), m, middle(curve, m, to)]
 }
 
+/// The distances of the curve from its chord at three points between the ends.
+fn sagittas(curve: &impl Fn(f64) -> Point, from: f64, to: f64) -> [f64; 3] {
+    let (a, b) = (curve(from), curve(to));
+    quarters(curve, from, to).map(|t| distance_to_segment(&curve(t), &a, &b))
+}
+
 /// The largest distance of the curve from its chord, at three points between the ends.
 pub(super) fn sagitta(curve: &impl Fn(f64) -> Point, from: f64, to: f64) -> f64 {
-    let (a, b) = (curve(from), curve(to));
-    let off = |t: f64| distance_to_segment(&curve(t), &a, &b);
-    quarters(curve, from, to).into_iter().map(off).fold(0.0, f64::max)
+    largest(&sagittas(curve, from, to))
+}
+
+fn largest(values: &[f64; 3]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
 }
 
 /// Rising parameters between which no chord of any of the curves is farther than `tolerance` from its arc, as far as
@@ -64,20 +84,12 @@ pub(super) fn cuts<C: Fn(f64) -> Point>(
     while let Some((from, to)) = open.pop() {
         let worst = curves
             .iter()
-            .map(|curve| (sagitta(curve, from, to), curve))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|(off, _)| *off > tolerance && found.len() + open.len() < MOST_CUTS);
-        // sagittas shrink with the square of the chord: thirds where halves would be too long and quarters too short
-        let within = match worst {
-            None => vec![],
-            Some((off, curve)) if off > 4.0 * tolerance && off <= 9.0 * tolerance => {
-                vec![part(curve, from, to, 0.5), part(curve, from, to, 2.0)]
-            }
-            Some((_, curve)) => vec![middle(curve, from, to)],
-        };
-        let mut ends = vec![from];
-        ends.extend(within);
-        ends.push(to);
+            .map(|curve| (sagittas(curve, from, to), curve))
+            .max_by(|a, b| largest(&a.0).total_cmp(&largest(&b.0)))
+            .filter(|(off, _)| largest(off) > tolerance && found.len() + open.len() < MOST_CUTS);
+        let ends = worst.as_ref().map_or_else(Vec::new, |(off, curve)| {
+            parts(curve, from, to, pieces_of(off, tolerance))
+        });
         if worst.is_some() && ends.is_sorted_by(|a, b| a < b) {
             open.extend(ends.windows(2).rev().map(|w| (w[0], w[1])));
         } else {
@@ -85,6 +97,16 @@ pub(super) fn cuts<C: Fn(f64) -> Point>(
         }
     }
     found
+}
+
+/// Into how many parts an arc has to be cut. Sagittas shrink with the square of the chord where the curvature is even,
+/// and then those at the quarters are three quarters of the middle one; elsewhere halves show more.
+fn pieces_of([before, middle, after]: &[f64; 3], tolerance: f64) -> u32 {
+    let even = |off: &f64| (0.65..0.85).contains(&(off / middle));
+    match even(before) && even(after) {
+        true => (1.04 * (middle / tolerance).sqrt()).ceil().clamp(2.0, 32.0) as u32,
+        false => 2,
+    }
 }
 
 fn distance_to_segment(p: &Point, a: &Point, b: &Point) -> f64 {

@@ -37,7 +37,7 @@ fn steps_to(shape: &dyn Implicit, p: &Point, n: &Vector, reach: f64, all: &[Vect
     let inside = shape.contains(p);
     let crosses = |d: &Vector, k: f64| shape.contains(&(p + d * (k * reach))) != inside;
     let along = [1e-3, 0.1, 0.5, 1.0].into_iter().find(|k| crosses(n, *k) || crosses(&-n, *k));
-    let lengths = [0.5, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0];
+    let lengths = [0.5, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 3.0, 4.0];
     let anywhere = || lengths.into_iter().find(|k| all.iter().any(|d| crosses(d, *k)));
     along.or_else(anywhere).unwrap_or(f64::INFINITY)
 }
@@ -174,7 +174,7 @@ fn bowls() {
         let bowl = Deformed::new(shape, Cavity::new(1.5, &shape).unwrap()).unwrap();
         // the volume has no closed form: a finer mesh has it
         let fine = tessellate(&bowl, Some(1e-5)).unwrap().mesh;
-        let farthest = if e[0] < 0.2 { 2.0 } else { 1.0 };
+        let farthest = if e[0] < 0.2 { 4.0 } else { 1.0 };
         let expected = Expected { farthest, ..Expected::new(fine.volume(), 2) };
         check(&bowl, &expected, &format!("bowl {e:?}"), |_| None);
     }
@@ -183,18 +183,17 @@ fn bowls() {
 #[test]
 fn the_default_is_affordable() {
     for (a, e, most) in [
-        ([1.0; 3], [0.1, 0.1], 5_000),
-        ([1.0; 3], [1.0, 1.0], 12_000),
+        ([1.0; 3], [0.1, 0.1], 6_000),
+        ([1.0; 3], [1.0, 1.0], 10_000),
         ([1.0; 3], [2.5, 2.5], 20_000),
-        ([0.01, 0.01, 1.0], [1.0, 1.0], 12_000),
-        ([1.0, 1.0, 0.01], [1.0, 1.0], 12_000),
-        ([1.0, 1.0, 0.01], [0.1, 0.1], 12_000),
-        ([1.0, 0.1, 0.01], [2.5, 2.5], 12_000),
+        ([0.01, 0.01, 1.0], [1.0, 1.0], 17_000),
+        ([1.0, 1.0, 0.01], [0.1, 0.1], 35_000),
+        ([1.0, 0.1, 0.01], [2.5, 2.5], 60_000),
+        // the worst: a thin disc with a sharp round edge
+        ([1.0, 1.0, 0.01], [1.0, 1.0], 110_000),
     ] {
-        let start = std::time::Instant::now();
-        let mesh = tessellate(&Superellipsoid::new(a, e).unwrap(), None).unwrap().mesh;
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        eprintln!("{a:?} {e:?}: {} vertices, {ms:.0} ms", mesh.vertices().len());
-        let _ = most;
+        let shape = Superellipsoid::new(a, e).unwrap();
+        let count = tessellate(&shape, None).unwrap().mesh.vertices().len();
+        assert!(count <= most, "{shape:?}: {count} vertices");
     }
 }
