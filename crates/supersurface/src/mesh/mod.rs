@@ -1,7 +1,23 @@
 //! Floor 6: triangle meshes of surfaces, and points spread evenly on curves and surfaces.
+//!
+//! ```
+//! use supersurface::{mesh::tessellate, shape::Superellipsoid};
+//! let tin = Superellipsoid::new([0.033, 0.033, 0.05], [0.1, 1.0])?;
+//! let found = tessellate(&tin, None)?;
+//! assert!(found.mesh.is_watertight());
+//! assert!((found.mesh.volume() / tin.volume() - 1.0).abs() < 1e-3);
+//! assert!(found.distance <= found.tolerance);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod angle_grid;
+mod chords;
 mod equal_arc;
+mod sample;
+mod tessellate;
 mod triangles;
 
 pub use equal_arc::{SuperellipseArc, pilu_fisher, pilu_fisher_step};
+pub use sample::{SurfacePoint, SurfaceSampler};
+pub use tessellate::{TessellateError, Tessellation, tessellate};
 pub use triangles::{Mesh, MeshSampler};

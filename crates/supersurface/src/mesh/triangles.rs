@@ -3,6 +3,7 @@
 //! Volume and centroid are sums over tetrahedra with one corner in common, `V = Σ a·(b × c)/6`; they mean something
 //! where the mesh is watertight and its triangles run counter-clockwise seen from outside.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
 
 use crate::shape::InvalidShape;
@@ -37,6 +38,11 @@ impl Mesh {
             InvalidShape::check(fits, "index of a vertex", f64::from(*i), "below their number")?;
         }
         Ok(Self { vertices, triangles })
+    }
+
+    /// The same for indices that are right by construction.
+    pub(super) fn from_checked(vertices: Vec<Point>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices, triangles }
     }
 
     /// The vertices, in metres.
@@ -129,13 +135,8 @@ impl Mesh {
     }
 
     /// Running sums of the areas, from which points are drawn.
-    pub fn sampler(&self) -> MeshSampler<'_> {
-        let mut sum = 0.0;
-        let sums = self.corners().map(|t| {
-            sum += area(t);
-            sum
-        });
-        MeshSampler { mesh: self, sums: sums.collect() }
+    pub fn sampler(&self) -> MeshSampler<&Self> {
+        MeshSampler::new(self)
     }
 
     /// The point that three numbers in [0, 1) choose, uniform over the area, with the unit normal of its triangle;
@@ -156,18 +157,35 @@ impl Mesh {
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MeshSampler<'a> {
-    mesh: &'a Mesh,
+pub struct MeshSampler<M> {
+    mesh: M,
     sums: Vec<f64>,
 }
 
-impl MeshSampler<'_> {
+impl<M: Borrow<Mesh>> MeshSampler<M> {
+    /// A sampler that borrows or owns its mesh.
+    pub fn new(mesh: M) -> Self {
+        let mut sum = 0.0;
+        let running = mesh.borrow().corners().map(|t| {
+            sum += area(t);
+            sum
+        });
+        let sums = running.collect();
+        Self { mesh, sums }
+    }
+
+    /// The mesh that is drawn from.
+    pub fn mesh(&self) -> &Mesh {
+        self.mesh.borrow()
+    }
+
     /// The point that three numbers in [0, 1) choose (the triangle, and a point of it), with the unit normal of its
     /// triangle; `None` when the mesh has no area.
     pub fn sample_at(&self, [which, u, v]: [f64; 3]) -> Option<(Point, Direction)> {
         let at = which * self.sums.last()?;
         let index = self.sums.partition_point(|sum| *sum <= at);
-        let [a, b, c] = self.mesh.corners_of(self.mesh.triangles.get(index)?);
+        let mesh = self.mesh();
+        let [a, b, c] = mesh.corners_of(mesh.triangles.get(index)?);
         let normal = Direction::try_new((b - a).cross(&(c - a)), 0.0)?;
         // the square root makes the strip at distance `1 - root` from `a` as likely as it is long
         let root = u.max(0.0).sqrt();

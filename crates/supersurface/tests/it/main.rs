@@ -11,6 +11,7 @@ mod golden_members;
 mod golden_sampling;
 mod golden_shapes;
 mod hit;
+mod mesh;
 mod picture;
 mod pipeline;
 mod scene;
