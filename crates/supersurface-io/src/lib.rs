@@ -7,6 +7,7 @@
 //! | instance mask (PNG) | in | [`read_mask`] |
 //! | gripper (TOML) | in | [`read_gripper`] |
 //! | shape (JSON) | in | [`read_shape`] |
+//! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
@@ -23,6 +24,7 @@
 
 mod bytes;
 mod camera_json;
+mod cloud_files;
 mod depth_png;
 mod error;
 mod grasps_json;
@@ -37,6 +39,7 @@ mod text;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
+pub use cloud_files::write_points;
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;

@@ -13,6 +13,7 @@
 mod angle_grid;
 mod chords;
 mod equal_arc;
+mod mass;
 mod sample;
 mod tessellate;
 mod triangles;
