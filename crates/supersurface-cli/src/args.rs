@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
+use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
+
 /// Recovers the objects of a depth camera's cloud as superellipsoids and supertoroids, and plans grasps.
 ///
 /// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 no table or nothing on it, 5 output failed.
@@ -21,6 +23,12 @@ pub(crate) enum Command {
     Grasp(Box<GraspArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
+    /// What a shape is: size, volume, mass.
+    Info(InfoArgs),
+    /// A watertight triangle mesh of a shape.
+    Mesh(MeshArgs),
+    /// Points on a shape, as a scanner might give them.
+    Sample(SampleArgs),
 }
 
 /// What to read and how to read it.

@@ -7,6 +7,7 @@ mod grasp;
 mod input;
 mod outputs;
 mod progress;
+mod shape;
 mod show;
 mod terminal;
 
@@ -20,6 +21,9 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Grasp(args) => grasp::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Info(args) => shape::info(args),
+        Command::Mesh(args) => shape::mesh(args),
+        Command::Sample(args) => shape::sample(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,6 +9,7 @@
 //! | shape (JSON) | in | [`read_shape`] |
 //! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
+//! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
 //! before they look at the file, and refuse files that depth cameras and PCL write every day (padding
@@ -29,6 +30,7 @@ mod depth_png;
 mod error;
 mod grasps_json;
 mod gripper;
+mod mesh_files;
 mod npy;
 mod pcd;
 mod ply;
@@ -44,6 +46,7 @@ pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;
 pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
+pub use mesh_files::write_mesh;
 pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};

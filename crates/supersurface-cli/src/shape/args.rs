@@ -47,14 +47,21 @@ pub(crate) struct ShapeArgs {
 }
 
 impl ShapeArgs {
+    /// The name for messages.
+    pub(crate) fn name(&self) -> String {
+        match &self.shape {
+            Some(file) if file == "-" => "standard input".into(),
+            Some(file) if !is_json(file) => file.clone(),
+            _ => "the shape on the command line".into(),
+        }
+    }
+
     /// The shape.
     pub(crate) fn model(&self) -> Result<Model, Failure> {
         let read = match &self.shape {
-            Some(text) if text.trim_start().starts_with('{') => {
-                parse_shape("the shape on the command line", text.as_bytes())
-            }
-            Some(file) => read_shape(file.as_ref()),
-            None => parse_shape("the shape on the command line", self.json()?.as_bytes()),
+            Some(file) if !is_json(file) => read_shape(file.as_ref()),
+            Some(text) => parse_shape(&self.name(), text.as_bytes()),
+            None => parse_shape(&self.name(), self.json()?.as_bytes()),
         };
         read.map_err(Failure::input)
     }
@@ -96,6 +103,10 @@ impl ShapeArgs {
         }
         Ok(format!(r#"{{{shape}, "deformations": [{}]}}"#, list.join(", ")))
     }
+}
+
+fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with('{')
 }
 
 /// So many finite numbers, no more and no fewer, as JSON has them.

@@ -45,7 +45,8 @@ pub(crate) fn meshed(name: &str, model: &Model, fine: Fineness) -> Result<Meshed
             let mut whole = Meshed { mesh: Mesh::default(), distance: Some(0.0) };
             for body in assembly.bodies(&assembly.rest_rotations()) {
                 let part = tessellated(name, &body, fine)?;
-                whole.mesh = whole.mesh.beside(&part.mesh);
+                let many = || Failure::input(format!("{name}: too many vertices for one mesh"));
+                whole.mesh = whole.mesh.beside(&part.mesh).ok_or_else(many)?;
                 whole.distance = whole.distance.zip(part.distance).map(|(a, b)| a.max(b));
             }
             Ok(whole)

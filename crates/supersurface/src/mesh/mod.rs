@@ -13,12 +13,14 @@
 mod angle_grid;
 mod chords;
 mod equal_arc;
+mod march;
 mod mass;
 mod sample;
 mod tessellate;
 mod triangles;
 
 pub use equal_arc::{SuperellipseArc, pilu_fisher, pilu_fisher_step};
+pub use march::{MarchError, MarchOptions, Resolution, march};
 pub use sample::{SurfacePoint, SurfaceSampler};
 pub use tessellate::{TessellateError, Tessellation, tessellate};
 pub use triangles::{Mesh, MeshSampler};
