@@ -9,6 +9,7 @@ mod outputs;
 mod progress;
 mod show;
 mod terminal;
+mod threads;
 
 use std::process::ExitCode;
 

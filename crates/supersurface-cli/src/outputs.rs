@@ -12,7 +12,7 @@ use supersurface_io::{
 use crate::args::{HowArgs, OutputArgs};
 use crate::exit::{Failure, print};
 use crate::progress::Progress;
-use crate::{show, terminal};
+use crate::{show, terminal, threads};
 
 /// A cloud with what is known about it.
 pub(crate) struct Source {
@@ -37,16 +37,28 @@ impl Run<'_> {
     pub(crate) fn run(
         &self,
         stage: (&'static str, String),
-        source: impl FnOnce() -> Result<Source, Failure>,
+        source: impl FnOnce() -> Result<Source, Failure> + Send,
     ) -> Result<(), Failure> {
         let gripper = supersurface_io::read_gripper(&self.how.gripper).map_err(Failure::input)?;
-        threads(self.how.threads)?;
         let mut progress = Progress::new(self.output.quiet);
+        let (pool, fewer) = threads::pool(self.how.threads)?;
+        if let Some(warning) = fewer {
+            progress.warn(&warning);
+        }
         progress.begin(stage.0, stage.1);
+        pool.install(|| self.go(source, &gripper, progress))
+    }
+
+    fn go(
+        &self,
+        source: impl FnOnce() -> Result<Source, Failure>,
+        gripper: &Gripper,
+        mut progress: Progress,
+    ) -> Result<(), Failure> {
         let source = match source() {
             Ok(source) => source,
             Err(failure) => {
-                let left = self.leave(Err(failure.message()), None, &gripper, progress);
+                let left = self.leave(Err(failure.message()), None, gripper, progress);
                 return Err(failure.and(left));
             }
         };
@@ -59,10 +71,10 @@ impl Run<'_> {
             ..Options::default()
         };
         let told = &mut |stage| progress.stage(stage);
-        let found = pipeline::run(&source.cloud, &gripper, &options, told);
+        let found = pipeline::run(&source.cloud, gripper, &options, told);
         let found = found.map_err(|error| self.no_result(&error));
         let result = found.as_ref().map_err(String::as_str);
-        let mut left = self.leave(result, Some(&source), &gripper, progress).into_iter();
+        let mut left = self.leave(result, Some(&source), gripper, progress).into_iter();
         match result {
             Err(message) => Err(Failure::nothing(message).and(left)),
             Ok(report) if report.objects.is_empty() => {
@@ -142,10 +154,4 @@ impl Run<'_> {
 /// The frame of a grasp file: that of the cloud, or the one into which the camera's pose leads.
 fn frame_id(source: &Source) -> &'static str {
     if source.frame == "cloud" { "camera" } else { "world" }
-}
-
-fn threads(count: Option<u16>) -> Result<(), Failure> {
-    let Some(count) = count else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.into());
-    pool.build_global().map_err(Failure::usage)
 }

@@ -1,9 +1,9 @@
 //! The exit status and what standard error says with it.
 
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
-use crate::{command, run, run_on, scratch, text};
+use crate::{command, finished, run, run_on, scratch, text};
 
 #[test]
 fn wrong_use_is_2() {
@@ -96,4 +96,15 @@ fn a_full_standard_error_costs_no_status() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let mut command = command(&["grasp", "no_such_cloud.pcd"]);
     assert_eq!(command.stderr(full).status().unwrap().code(), Some(3));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn more_threads_than_the_system_carries_are_fewer_with_a_warning() {
+    for line in ["\"$0\" demo --threads 64", "RAYON_NUM_THREADS=64 \"$0\" demo"] {
+        let script = format!("ulimit -v 500000; {line}");
+        let binary = env!("CARGO_BIN_EXE_supersurface");
+        let ran = finished(Command::new("sh").args(["-c", &script, binary])).ended(0);
+        assert!(ran.stderr.contains("instead of 64") && ran.stderr.contains("--threads"));
+    }
 }
