@@ -9,8 +9,10 @@
 //! | 1 | [`numeric`] | norms, powers, random streams |
 //! | 2 | [`shape`] | the shapes: gauge, gradient, parametric points, support points, volume |
 //! | 3 | [`measure`], [`camera`] | first hit of a ray; pinhole cameras and depth images |
+//! | 4 | [`deform`] | shapes tapered, twisted, bent, hollowed; deformations nest |
 //! | 5 | [`surface`] | the closed family as one type, for files and programs |
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
+//! | 6 | [`mesh`] | watertight triangle meshes; points spread evenly on curves and surfaces |
 //! | 7 | [`segment`], [`fit`] | table plane and objects; one supersurface per object |
 //! | 8 | [`grasp`], [`scene`] | ranked grasps; scenes seen by a simulated depth camera |
 //! | 9 | [`pipeline`], [`picture`] | cloud to grasps in one call; pixels on the CPU |
@@ -29,9 +31,11 @@ pub use nalgebra;
 
 pub mod camera;
 pub mod cloud;
+pub mod deform;
 pub mod fit;
 pub mod grasp;
 pub mod measure;
+pub mod mesh;
 pub mod numeric;
 pub mod picture;
 pub mod pipeline;

@@ -30,7 +30,7 @@ pub struct Hit {
 
 /// The first point of the surface along the ray, at most `max` metres from its origin; `None` when
 /// there is none, or when a number of the ray is not finite. A ray that starts inside meets the
-/// surface where it leaves.
+/// surface where it leaves. A solid without bounds needs a finite `max`.
 ///
 /// ```
 /// use supersurface::{Direction, Point, Vector, measure::first_hit, shape::{Ray, Superellipsoid}};
@@ -42,7 +42,7 @@ pub struct Hit {
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
 pub fn first_hit(shape: &(impl Implicit + ?Sized), ray: &Ray, max: f64) -> Option<Hit> {
-    let [near, far] = clip(&shape.bounds(), ray)?;
+    let [near, far] = clip(&shape.bounds(), ray, max)?;
     if near > max || max.is_nan() {
         return None;
     }
@@ -52,8 +52,9 @@ pub fn first_hit(shape: &(impl Implicit + ?Sized), ray: &Ray, max: f64) -> Optio
     (distance <= max).then(|| along.hit(distance))
 }
 
-/// The part of the ray inside a box, a little widened so that its ends lie outside the solid.
-fn clip([low, high]: &[Point; 2], ray: &Ray) -> Option<[f64; 2]> {
+/// The part of the ray inside a box, a little widened so that its ends lie outside the solid; in a box without
+/// end the part up to `max`.
+fn clip([low, high]: &[Point; 2], ray: &Ray, max: f64) -> Option<[f64; 2]> {
     let margin = 1e-9 * (high - low).amax();
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
@@ -71,6 +72,9 @@ fn clip([low, high]: &[Point; 2], ray: &Ray) -> Option<[f64; 2]> {
         }
         near = near.max(a.min(b));
         far = far.min(a.max(b));
+    }
+    if far == f64::INFINITY {
+        far = max;
     }
     (near <= far && far.is_finite()).then_some([near, far])
 }
@@ -218,7 +222,7 @@ impl<S: Implicit + ?Sized> Along<'_, S> {
 mod tests {
     use super::*;
     use crate::Vector;
-    use crate::shape::{Superellipsoid, Supertoroid};
+    use crate::shape::{Superellipsoid, SuperhyperboloidOneSheet, Superparaboloid, Supertoroid};
 
     fn ray(origin: [f64; 3], direction: [f64; 3]) -> Ray {
         Ray {
@@ -233,6 +237,17 @@ mod tests {
         let hit = first_hit(&ball, &ray([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 9.0).unwrap();
         assert!((hit.distance - 1.0).abs() < 1e-12 && hit.normal.x > 0.999);
         assert!(first_hit(&ball, &ray([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 0.9).is_none());
+    }
+
+    #[test]
+    fn solids_without_bounds_are_met_up_to_a_finite_length() {
+        let bowl = Superparaboloid::new([1.0; 3], [1.0; 2]).unwrap();
+        let up = ray([0.5, 0.0, -2.0], [0.0, 0.0, 1.0]);
+        assert!((first_hit(&bowl, &up, 10.0).unwrap().distance - 2.25).abs() < 1e-12);
+        assert!(first_hit(&bowl, &up, 2.0).is_none());
+        let waist = SuperhyperboloidOneSheet::new([1.0; 3], [1.0; 2]).unwrap();
+        let hit = first_hit(&waist, &ray([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 20.0).unwrap();
+        assert!((hit.distance - 4.0).abs() < 1e-12 && hit.normal.x < -0.999);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Floor 1: the small mathematics that every shape is made of.
 
+pub mod dirichlet;
 pub mod lanes;
 pub mod powers;
 pub mod random;
+pub mod spline;
 pub mod superellipse;
+pub mod tanh_sinh;

@@ -22,6 +22,40 @@ pub fn power(b: f64, s: f64) -> f64 {
     signed_power(b.abs(), s)
 }
 
+/// Derivative of [`signed_power`] by `b`: `s |b|^(s-1)`; `None` where it is infinite (`b = 0`, `s < 1`).
+///
+/// ```
+/// use supersurface::numeric::powers::signed_power_slope;
+/// assert_eq!(signed_power_slope(-4.0, 0.5), Some(0.25));
+/// assert_eq!(signed_power_slope(0.0, 0.5), None);
+/// ```
+#[inline]
+pub fn signed_power_slope(b: f64, s: f64) -> Option<f64> {
+    match (b == 0.0, s - 1.0) {
+        (true, rest) if rest < 0.0 => None,
+        (true, rest) => Some(f64::from(rest == 0.0)),
+        (false, rest) => Some(s * power(b, rest)),
+    }
+}
+
+/// `u^p - v^p` for non-negative `u`, `v` and `p > 0`, without the loss of digits where both are close; where
+/// both powers overflow it is infinite with the right sign.
+///
+/// ```
+/// use supersurface::numeric::powers::power_difference;
+/// assert_eq!(power_difference(1e300, 2e300, 3.0), f64::NEG_INFINITY);
+/// ```
+pub fn power_difference(u: f64, v: f64, p: f64) -> f64 {
+    let (large, small) = if u >= v { (u, v) } else { (v, u) };
+    if large == small {
+        return 0.0;
+    }
+    // 1 - (small/large)^p, never 0 here unless the quotient rounds to 1
+    let rest = -(p * (small / large).ln()).exp_m1();
+    let size = if rest > 0.0 { power(large, p) * rest } else { 0.0 };
+    if u >= v { size } else { -size }
+}
+
 /// Cosine and sine of an angle in radians, exact (0 or ±1) at multiples of π/2.
 ///
 /// `cos(π/2)` in f64 is 6e-17, and its power 0.1 is 0.024: without this snap a pole of a box would

@@ -27,12 +27,17 @@ pub fn norm(u: f64, v: f64, p: f64) -> f64 {
     weighted(u, v, p).norm
 }
 
-/// The norm and both weights; at `u = v = 0` the norm is 0 and the weights are one half.
+/// The norm and both weights; at `u = v = 0` the norm is 0 and the weights are one half, also where both are
+/// infinite.
 #[inline]
 pub fn weighted(u: f64, v: f64, p: f64) -> Weighted {
     let (large, small) = if u >= v { (u, v) } else { (v, u) };
     if large == 0.0 {
         return Weighted { norm: 0.0, first: 0.5, second: 0.5 };
+    }
+    if large == f64::INFINITY {
+        let first = if u == v { 0.5 } else { f64::from(u > v) };
+        return Weighted { norm: large, first, second: 1.0 - first };
     }
     let t = ratio_power(small, large, p);
     let norm = large * (t.ln_1p() / p).exp();

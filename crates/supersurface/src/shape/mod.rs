@@ -1,22 +1,45 @@
 //! Floor 2: the members of the family, each with its closed forms, and the traits that say what a
 //! shape can answer.
 
+mod angular;
+#[cfg(test)]
+mod checks;
 mod curvature;
 mod error;
+pub mod extended;
+pub mod hyperquadric;
+mod jet;
 mod mass;
 mod plane;
 mod posed;
+pub mod quadric;
 mod ray;
+pub mod separable_superquadric;
+pub mod supercone;
+pub mod supercylinder;
 pub mod superellipsoid;
+pub mod superformula;
+pub mod superhyperboloid;
+pub mod superparaboloid;
 pub mod supertoroid;
 mod traits;
 
 pub use curvature::{Curvature, FundamentalForms};
 pub use error::InvalidShape;
+pub use extended::{ExtendedSuperellipsoid, RadialExtended};
+pub use hyperquadric::{Hyperquadric, HyperquadricForm};
 pub use mass::Mass;
 pub use plane::Plane;
 pub use posed::Posed;
+pub use quadric::{NormalForm, Quadric, QuadricType};
 pub use ray::Ray;
+pub use separable_superquadric::SeparableSuperquadric;
+pub use supercone::Supercone;
+pub use supercylinder::Supercylinder;
 pub use superellipsoid::Superellipsoid;
+pub use superformula::{Superformula, Supershape};
+pub use superhyperboloid::{Sheet, SuperhyperboloidOneSheet, SuperhyperboloidTwoSheets};
+pub use superparaboloid::Superparaboloid;
 pub use supertoroid::Supertoroid;
+pub(crate) use traits::box_extent;
 pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};

@@ -56,10 +56,18 @@ impl<S: Implicit> Implicit for Posed<S> {
 
     fn bounds(&self) -> [Point; 2] {
         let [low, high] = self.shape.bounds();
+        if low.iter().chain(high.iter()).any(|v| v.is_infinite()) {
+            return [f64::NEG_INFINITY, f64::INFINITY].map(|v| Point::new(v, v, v));
+        }
         let centre = self.pose * nalgebra::center(&low, &high);
         let half = (high - low) * 0.5;
         let extent = self.pose.rotation.to_rotation_matrix().matrix().abs() * half;
         [centre - extent, centre + extent]
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        let local = self.pose.rotation.inverse_transform_vector(n);
+        n.dot(&self.pose.translation.vector) + self.shape.extent(&local)
     }
 
     fn is_convex(&self) -> bool {
@@ -70,5 +78,19 @@ impl<S: Implicit> Implicit for Posed<S> {
 impl<S: SupportMap> SupportMap for Posed<S> {
     fn support_point(&self, n: &Vector) -> Point {
         self.pose * self.shape.support_point(&self.pose.rotation.inverse_transform_vector(n))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Superparaboloid;
+
+    #[test]
+    fn a_turned_shape_without_bounds_has_none_in_any_direction() {
+        let bowl = Superparaboloid::new([1.0; 3], [1.0; 2]).unwrap();
+        let [low, high] = Posed::new(bowl, Pose::rotation(Vector::x())).unwrap().bounds();
+        assert!(low.iter().all(|v| *v == f64::NEG_INFINITY));
+        assert!(high.iter().all(|v| *v == f64::INFINITY));
     }
 }

@@ -1,5 +1,7 @@
 //! What a shape can answer. Each trait is implemented only where the mathematics allows.
 
+use std::cmp::Ordering;
+
 use nalgebra::Matrix3;
 
 use crate::shape::Mass;
@@ -19,6 +21,12 @@ pub trait Implicit {
     /// the solid is not bounded.
     fn bounds(&self) -> [Point; 2];
 
+    /// An upper bound of `n·x` over the solid, in metres times `|n|`: the support function where the shape knows
+    /// it, otherwise that of the box of [`bounds`](Self::bounds).
+    fn extent(&self, n: &Vector) -> f64 {
+        box_extent(&self.bounds(), n)
+    }
+
     /// True when the gauge is a convex function of the point, so that a ray meets the solid in one
     /// interval. `false` promises nothing.
     fn is_convex(&self) -> bool {
@@ -30,11 +38,29 @@ pub trait Implicit {
         self.gauge(p) <= 1.0
     }
 
-    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside.
+    /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside. Infinite with the
+    /// sign of `g - 1` where there is no gradient.
     fn first_order_distance(&self, p: &Point) -> f64 {
-        let gradient = self.gradient(p).norm();
-        if gradient > 0.0 { (self.gauge(p) - 1.0) / gradient } else { f64::NEG_INFINITY }
+        let (excess, gradient) = (self.gauge(p) - 1.0, self.gradient(p));
+        let largest = gradient.amax();
+        match largest > 0.0 {
+            // in this order no square overflows
+            true => excess / largest / (gradient / largest).norm(),
+            false if excess == 0.0 => 0.0,
+            false => f64::INFINITY.copysign(excess),
+        }
     }
+}
+
+/// The support function of a box (lowest, highest corner), which may be infinite.
+pub(crate) fn box_extent([low, high]: &[Point; 2], n: &Vector) -> f64 {
+    let along = |n: f64, low: f64, high: f64| match n.partial_cmp(&0.0) {
+        Some(Ordering::Greater) => n * high,
+        Some(Ordering::Less) => n * low,
+        // also where the box is infinite
+        _ => 0.0,
+    };
+    along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z)
 }
 
 /// A gauge with second derivatives.

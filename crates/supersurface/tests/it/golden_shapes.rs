@@ -2,6 +2,7 @@
 //! (`tests/golden`, or the folder that `SUPERSURFACE_GOLDEN` names).
 
 use serde_json::Value;
+use supersurface::measure::{Closest, ClosestFinder, first_order, second_order};
 use supersurface::shape::{
     Implicit, Mass, MassProperties, Parametric, Posed, Superellipsoid, Supertoroid, SupportMap,
 };
@@ -32,7 +33,7 @@ fn toroid(case: &Value) -> Supertoroid {
     Supertoroid::new([a, b, c], ring, numbers(&case["e"]).unwrap()).unwrap()
 }
 
-fn point(v: &Value) -> Point {
+pub(crate) fn point(v: &Value) -> Point {
     Point::from(numbers::<3>(v).unwrap())
 }
 
@@ -43,13 +44,13 @@ fn angle(v: &Value) -> f64 {
     })
 }
 
-fn close(name: &str, value: f64, truth: &Value, tolerance: f64) {
+pub(crate) fn close(name: &str, value: f64, truth: &Value, tolerance: f64) {
     let Some(truth) = truth.as_f64() else { return };
     assert!((value - truth).abs() <= tolerance, "{name}: {value} against {truth}");
 }
 
 /// Components that are `null` do not exist at that point.
-fn close_vector(name: &str, value: &Vector, truth: &Value, relative: f64) {
+pub(crate) fn close_vector(name: &str, value: &Vector, truth: &Value, relative: f64) {
     let list = truth.as_array().unwrap();
     let largest = list.iter().filter_map(Value::as_f64).fold(0.0f64, |m, v| m.max(v.abs()));
     for (v, t) in value.iter().zip(list) {
@@ -135,21 +136,55 @@ fn golden_parametric() {
 fn golden_distance() {
     let data = golden("distance");
     let mut cases = 0;
+    let euclid = |case: &Value, found: Option<Closest>, largest: f64| {
+        let found = found.unwrap();
+        close("euclid", found.distance, &case["euclid_signed"], 1e-11 * largest);
+        if case["unique"] == true {
+            let foot = point(&case["euclid_foot"]);
+            assert!((found.point - foot).amax() < 1e-6 * largest, "{found:?} {case}");
+        }
+    };
     for case in data["superellipsoid"].as_array().unwrap() {
         let (s, p) = (ellipsoid(case), point(&case["p"]));
         let largest = s.semi_axes().into_iter().fold(0.0, f64::max);
+        close("beta", 1.0 / s.gauge(&p), &case["beta"], 1e-12 / s.gauge(&p));
         close("radial", s.radial_distance(&p), &case["radial"], 1e-12 * largest);
+        if let Some(foot) = s.radial_foot(&p) {
+            close_vector("radial foot", &foot.coords, &case["radial_foot"], 1e-12);
+        }
         let taubin = s.first_order_distance(&p).abs();
         close("taubin", taubin, &case["taubin1_g"], 1e-9 * taubin);
+        let value = s.log_implicit_value(&p).exp_m1();
+        let gradient = s.implicit_gradient(&p);
+        if let Some(first) = gradient.and_then(|g| first_order(value, &g)) {
+            close("taubin F", first, &case["taubin1_F"], 1e-9 * first);
+        }
+        let hessian = s.implicit_hessian(&p);
+        if let Some(second) = gradient.zip(hessian).and_then(|(g, h)| second_order(value, &g, &h)) {
+            close("taubin F, second", second, &case["taubin2_F"], 1e-9 * second);
+        }
+        euclid(case, ClosestFinder::superellipsoid(&s).find(&p), largest);
         cases += 1;
     }
     for case in data["supertoroid"].as_array().unwrap() {
         let (s, p) = (toroid(case), point(&case["p"]));
         let largest = s.semi_axes().into_iter().fold(0.0, f64::max) * (1.0 + s.ring_ratio());
         close("meridian", s.meridian_distance(&p), &case["meridian"], 1e-12 * largest);
+        if let Some(first) =
+            s.implicit_gradient(&p).and_then(|g| first_order(s.log_implicit_value(&p).exp_m1(), &g))
+        {
+            close("taubin F", first, &case["taubin1_F"], 1e-9 * first);
+        }
+        euclid(case, ClosestFinder::supertoroid(&s).find(&p), largest);
         cases += 1;
     }
-    assert!(cases >= 150, "{cases} cases");
+    for case in data["exact"].as_array().unwrap() {
+        let (s, p) = (ellipsoid(case), point(&case["p"]));
+        let largest = s.semi_axes().into_iter().fold(0.0, f64::max);
+        euclid(case, ClosestFinder::superellipsoid(&s).find(&p), largest);
+        cases += 1;
+    }
+    assert!(cases >= 180, "{cases} cases");
 }
 
 #[test]

@@ -1,7 +1,12 @@
 //! Integration tests of the library, one binary.
 
+mod closest;
 mod floors;
 mod golden_antipodal;
+mod golden_deform;
+mod golden_general;
+mod golden_members;
+mod golden_sampling;
 mod golden_shapes;
 mod hit;
 mod picture;

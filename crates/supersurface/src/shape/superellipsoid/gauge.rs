@@ -2,7 +2,7 @@
 
 use super::Superellipsoid;
 use crate::numeric::superellipse::{norm, weighted};
-use crate::shape::Implicit;
+use crate::shape::{Implicit, SupportMap};
 use crate::{Point, Vector};
 
 impl Implicit for Superellipsoid {
@@ -34,6 +34,10 @@ impl Implicit for Superellipsoid {
     fn bounds(&self) -> [Point; 2] {
         let a = Vector::from(self.semi_axes);
         [Point::from(-a), Point::from(a)]
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        self.support(n)
     }
 
     /// Both norms are convex for exponents up to 2, and the outer one grows with the inner one.

@@ -2,7 +2,7 @@
 
 use super::Supertoroid;
 use crate::numeric::superellipse::{norm, weighted};
-use crate::shape::Implicit;
+use crate::shape::{Implicit, SupportMap};
 use crate::{Point, Vector};
 
 impl Implicit for Supertoroid {
@@ -36,5 +36,9 @@ impl Implicit for Supertoroid {
         let outer = 1.0 + self.ring_ratio;
         let half = Vector::new(a1 * outer, a2 * outer, a3);
         [Point::from(-half), Point::from(half)]
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        self.support(n)
     }
 }

@@ -1,0 +1,39 @@
+//! The pieces that parametric forms share: signed powers of angles, their slopes, unit normals.
+
+use crate::numeric::powers::{quadrant_cos_sin, signed_power, signed_power_slope};
+use crate::{Direction, Vector};
+
+/// `(cos^ε ω, sin^ε ω)` with signed powers: the unit superellipse.
+pub(super) fn superellipse(omega: f64, e: f64) -> [f64; 2] {
+    let (c, s) = quadrant_cos_sin(omega);
+    [signed_power(c, e), signed_power(s, e)]
+}
+
+/// Its derivatives by ω; `None` where one is infinite.
+pub(super) fn superellipse_slopes(omega: f64, e: f64) -> Option<[f64; 2]> {
+    let (c, s) = quadrant_cos_sin(omega);
+    Some([-signed_power_slope(c, e)? * s, signed_power_slope(s, e)? * c])
+}
+
+/// `(cos^(2-ε) ω, sin^(2-ε) ω)`, the direction of its normal; `None` on a corner or cusp (ε from 2).
+pub(super) fn superellipse_normal(omega: f64, e: f64) -> Option<[f64; 2]> {
+    let (c, s) = quadrant_cos_sin(omega);
+    Some([normal_power(c, e)?, normal_power(s, e)?])
+}
+
+/// `b^(2-ε)` with its sign; `None` at 0 for ε from 2, where it has no limit.
+pub(super) fn normal_power(b: f64, e: f64) -> Option<f64> {
+    (b != 0.0 || e < 2.0).then(|| signed_power(b, 2.0 - e))
+}
+
+/// The unit vector along `n`; `None` for a vector that has no direction or overflows.
+pub(super) fn unit(n: Vector) -> Option<Direction> {
+    // scaled first, so that the squares do not overflow
+    let largest = n.amax();
+    (largest > 0.0 && largest.is_finite()).then(|| Direction::new_normalize(n / largest))
+}
+
+/// Both tangents, where all their components are finite.
+pub(super) fn finite(tangents: [Vector; 2]) -> Option<[Vector; 2]> {
+    tangents.iter().flat_map(Vector::iter).all(|v| v.is_finite()).then_some(tangents)
+}
