@@ -64,3 +64,17 @@ fn promises_that_the_file_does_not_keep_are_refused_at_once() {
         }
     }
 }
+
+#[test]
+fn elements_without_properties_cost_nothing() {
+    for format in ["ascii", "binary_little_endian"] {
+        let mut file = format!("ply\nformat {format} 1.0\n");
+        file += &"element nothing 1048576\n".repeat(1990);
+        file += "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3 \
+                 and more";
+        let began = std::time::Instant::now();
+        let read = parse("many.ply", file.as_bytes(), &Default::default()).unwrap();
+        assert_eq!(read.cloud.points.len(), 1, "{format}");
+        assert!(began.elapsed().as_secs_f64() < 0.5, "{format}: {:?}", began.elapsed());
+    }
+}
