@@ -161,6 +161,15 @@ impl File {
             "\"grasp-gripper\"",
         )?;
         self.check(self.version == 1, "version", f64::from(self.version), "1")?;
+        let printable = |c: char| !c.is_control();
+        let fair =
+            (1..=64).contains(&self.name.chars().count()) && self.name.chars().all(printable);
+        self.check(
+            fair,
+            "name",
+            format!("{:?}", self.name),
+            "1 to 64 characters without controls",
+        )?;
         let (approach, closing) = (&self.frame.approach_axis, &self.frame.closing_axis);
         for (what, said, is) in [("approach_axis", approach, "+z"), ("closing_axis", closing, "+x")]
         {

@@ -36,6 +36,8 @@ fn a_broken_file_names_file_and_field() {
         (jaw, "kind = \"parallel\"", "kind = \"magnet\"", "kind"),
         (jaw, "approach_axis = \"+z\"", "approach_axis = \"-z\"", "approach_axis"),
         (jaw, "closing_axis = \"+x\"", "closing_axis = \"+y\"", "closing_axis"),
+        (jaw, "name = \"panda_hand\"", "name = \"\\u001b[31m\"", "name"),
+        (jaw, "name = \"panda_hand\"", "name = \"\"", "name"),
         (jaw, "outside_mu", "outside_nu", "outside_nu"),
         (jaw, "mount_frame", "mount_farme", "mount_farme"),
         (jaw, "[motion]", "[motion]\nway = 1", "way"),
