@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
 use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
+use crate::threads::MOST;
 
 /// Recovers the objects of a depth camera's cloud as superellipsoids and supertoroids, and plans grasps.
 ///
@@ -115,8 +116,8 @@ pub(crate) struct HowArgs {
     /// Family of surfaces.
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
-    /// Number of threads; results do not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+    /// Number of threads; results do not depend on it. Fewer are used where the system starts no more.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
     pub(crate) threads: Option<u16>,
 }
 

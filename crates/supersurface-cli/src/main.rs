@@ -10,6 +10,7 @@ mod progress;
 mod shape;
 mod show;
 mod terminal;
+mod threads;
 
 use std::process::ExitCode;
 

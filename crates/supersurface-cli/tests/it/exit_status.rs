@@ -1,8 +1,9 @@
 //! The exit status and what standard error says with it.
 
-use std::process::Stdio;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
-use crate::{command, run, run_on, scratch, text};
+use crate::{command, finished, run, run_on, scratch, text};
 
 #[test]
 fn wrong_use_is_2() {
@@ -62,10 +63,48 @@ fn output_that_cannot_be_written_is_5_and_named() {
 }
 
 #[test]
+fn an_output_that_fails_costs_no_other() {
+    let [grasps, picture, empty] = ["kept.json", "kept.png", "empty.xyz"].map(scratch);
+    let outputs = ["--labels", "/no_such_folder/l", "--grasps", text(&grasps), "--json"];
+    let picture = ["--png", text(&picture)];
+    let ran = run(&[&["demo"], &outputs[..], &picture[..]].concat()).ended(5);
+    assert_eq!(ran.json()["objects"].as_array().unwrap().len(), 5);
+    assert!(grasps.exists() && Path::new(picture[1]).exists());
+    let ran =
+        run(&["demo", "--labels", "/no_such_folder/l", "--png", "/no_such_folder/p"]).ended(5);
+    assert_eq!(ran.stderr.matches("error: /no_such_folder/").count(), 2, "{}", ran.stderr);
+    // a run without a result keeps its status and its report
+    std::fs::write(&empty, "1 1 1\n").unwrap();
+    let ran = run(&[&["grasp", text(&empty)], &outputs[..]].concat()).ended(4);
+    assert!(ran.stderr.contains("/no_such_folder/l") && ran.json()["message"].is_string());
+    let ran = run(&[&["grasp", "no_such_cloud.pcd"], &outputs[..]].concat()).ended(3);
+    assert!(ran.stderr.contains("/no_such_folder/l") && ran.json()["message"].is_string());
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     let mut command = command(&["demo"]);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_standard_error_costs_no_status() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let mut command = command(&["grasp", "no_such_cloud.pcd"]);
+    assert_eq!(command.stderr(full).status().unwrap().code(), Some(3));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn more_threads_than_the_system_carries_are_fewer_with_a_warning() {
+    for line in ["\"$0\" demo --threads 64", "RAYON_NUM_THREADS=64 \"$0\" demo"] {
+        let script = format!("ulimit -v 500000; {line}");
+        let binary = env!("CARGO_BIN_EXE_supersurface");
+        let ran = finished(Command::new("sh").args(["-c", &script, binary])).ended(0);
+        assert!(ran.stderr.contains("instead of 64") && ran.stderr.contains("--threads"));
+    }
 }

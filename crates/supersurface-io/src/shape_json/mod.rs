@@ -18,7 +18,6 @@ use crate::error::{Fault, ReadError};
 use crate::read::{load, shown_name};
 
 /// What a shape file holds.
-#[non_exhaustive]
 pub enum Model {
     /// A closed member of the family with a parametric form, deformed or not.
     Solid(Posed<Solid>),

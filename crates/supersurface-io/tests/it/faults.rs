@@ -64,3 +64,44 @@ fn promises_that_the_file_does_not_keep_are_refused_at_once() {
         }
     }
 }
+
+#[test]
+fn elements_without_properties_cost_nothing() {
+    for format in ["ascii", "binary_little_endian"] {
+        let mut file = format!("ply\nformat {format} 1.0\n");
+        file += &"element nothing 1048576\n".repeat(1990);
+        file += "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3 \
+                 and more";
+        let began = std::time::Instant::now();
+        let read = parse("many.ply", file.as_bytes(), &Default::default()).unwrap();
+        assert_eq!(read.cloud.points.len(), 1, "{format}");
+        assert!(began.elapsed().as_secs_f64() < 0.5, "{format}: {:?}", began.elapsed());
+    }
+}
+
+#[test]
+fn what_a_file_says_is_quoted_short_and_harmless() {
+    let long = "a".repeat(100_000);
+    let pcd = |fields: &str| {
+        format!(
+            "VERSION 0.7\nFIELDS {fields}\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1\n"
+        )
+    };
+    let ply = |format: &str| format!("ply\nformat {format} 1.0\nend_header\n");
+    for bad in ["\u{1b}[31mred\u{1b}]0;title\u{7}", "\u{202e}back", long.as_str()] {
+        let named = ReadOptions { instances: Some("object".into()), ..Default::default() };
+        for (name, file) in [
+            ("t.xyz", format!("{bad} b c\n1 2 3\n")),
+            ("t.csv", format!("x,y,z,{bad}\n1,2,3,4\n")),
+            ("t.pcd", pcd(bad)),
+            ("t.pcd", pcd("x").replace("DATA ascii", &format!("DATA {bad}"))),
+            ("t.pcd", pcd("x").replace("WIDTH 1", &format!("WIDTH {bad}"))),
+            ("t.ply", ply(bad)),
+            ("t.ply", ply("ascii").replace("end", &format!("element {bad} x\nend"))),
+        ] {
+            let error = parse(name, file.as_bytes(), &named).unwrap_err().to_string();
+            assert!(error.chars().count() < 1000, "{}", error.len());
+            assert!(!error.contains(['\u{1b}', '\u{7}', '\u{202e}', '\n']), "{error:?}");
+        }
+    }
+}
