@@ -7,16 +7,29 @@ use crate::exit::Failure;
 
 /// Which shape.
 #[derive(Debug, Args)]
-#[group(id = "which", required = true, args = ["shape", "superellipsoid", "supertoroid"])]
+#[group(skip)]
 pub(crate) struct ShapeArgs {
     /// Shape as a JSON file, - for standard input, or JSON itself: '{"type": "superellipsoid", ...}' (docs/shape.md
     /// has all types).
-    pub(crate) shape: Option<String>,
+    #[arg(required_unless_present_any = ["superellipsoid", "supertoroid"])]
+    shape: Option<String>,
     /// A superellipsoid: semi-axes in metres and exponents.
-    #[arg(long, value_name = "A1,A2,A3,E1,E2", value_delimiter = ',', num_args = 1)]
+    #[arg(
+        long,
+        value_name = "A1,A2,A3,E1,E2",
+        value_delimiter = ',',
+        num_args = 1,
+        conflicts_with = "shape"
+    )]
     superellipsoid: Option<Vec<f64>>,
     /// A supertoroid: semi-axes of the tube in metres, ring ratio, exponents.
-    #[arg(long, value_name = "A1,A2,A3,A4,E1,E2", value_delimiter = ',', num_args = 1)]
+    #[arg(
+        long,
+        value_name = "A1,A2,A3,A4,E1,E2",
+        value_delimiter = ',',
+        num_args = 1,
+        conflicts_with_all = ["shape", "superellipsoid"]
+    )]
     supertoroid: Option<Vec<f64>>,
     /// A dish of this depth in its upper side, in half heights, in [0, 2).
     #[arg(long, value_name = "C", conflicts_with = "shape")]

@@ -142,7 +142,7 @@ fn as_text(facts: &Facts, density: f64) -> String {
     let mut out = format!("{}\n", facts.name);
     let mut line = |what: &str, value: String| {
         // writing to a string does not fail
-        let _ = writeln!(out, "  {what:<16} {value}");
+        let _ = writeln!(out, "  {what:<18} {value}");
     };
     for (what, value) in &facts.notes {
         line(what, value.clone());

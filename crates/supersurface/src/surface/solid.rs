@@ -7,6 +7,7 @@ use crate::shape::{
     Implicit, InvalidShape, MassProperties, Parametric, SecondOrder, SeparableSuperquadric,
     Superellipsoid, Supershape, Supertoroid, SupportMap,
 };
+use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
 
 /// A closed solid with an implicit and a parametric form.
@@ -51,6 +52,15 @@ impl From<Superellipsoid> for Solid {
 impl From<Supertoroid> for Solid {
     fn from(shape: Supertoroid) -> Self {
         Self::Supertoroid(shape)
+    }
+}
+
+impl From<Surface> for Solid {
+    fn from(surface: Surface) -> Self {
+        match surface {
+            Surface::Superellipsoid(s) => Self::Superellipsoid(s),
+            Surface::Supertoroid(s) => Self::Supertoroid(s),
+        }
     }
 }
 
