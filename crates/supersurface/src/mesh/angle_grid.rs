@@ -1,9 +1,9 @@
-//! A grid of a closed surface's two angles, from which the mesh is made.
+//! A grid of a surface's two angles, from which the mesh is made.
 //!
 //! Rows and columns are cut so that chords of meridians and of parallels stay within 0.45 of the tolerance of their
 //! arcs (`chords`); then every cell is compared with the surface at five points between its corners, takes the better
 //! of its two diagonals, and its row or column is cut again where it is still too far. Poles are single vertices and
-//! seams share theirs, so that the mesh is closed by construction.
+//! seams share theirs, so that the mesh of a closed surface is closed by construction.
 
 use std::collections::BTreeSet;
 
@@ -24,8 +24,10 @@ pub(super) struct Grid<'a, S: ?Sized> {
     surface: &'a S,
     /// The largest difference of a coordinate, in metres.
     pub(super) size: f64,
-    /// True when the first and the last row are poles, false when they are the same row.
-    poles: bool,
+    /// Whether the first and the last row are a point each.
+    poles: [bool; 2],
+    /// Whether the last row is the first again, and the last column.
+    joined: [bool; 2],
     rows: Vec<f64>,
     columns: Vec<f64>,
 }
@@ -44,8 +46,8 @@ pub(super) struct Further {
 }
 
 impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
-    /// A first grid, if the surface is closed.
-    pub(super) fn closed(surface: &'a S) -> Option<Self> {
+    /// A first grid, if the surface is finite and of some size.
+    pub(super) fn new(surface: &'a S) -> Option<Self> {
         let [rows, columns] = surface.domain().map(even);
         let points: Vec<Vec<Point>> =
             rows.iter().map(|e| columns.iter().map(|o| surface.point(*e, *o)).collect()).collect();
@@ -58,12 +60,18 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
         }
         let same = |a: &Point, b: &Point| (a - b).amax() <= 1e-9 * size;
         let pole = |row: &[Point]| row.iter().zip(row.iter().skip(1)).all(|(a, b)| same(a, b));
-        let joined = first.iter().zip(last).all(|(a, b)| same(a, b));
-        let around =
-            points.iter().all(|r| r.first().zip(r.last()).is_some_and(|(a, b)| same(a, b)));
+        let joined = [
+            first.iter().zip(last).all(|(a, b)| same(a, b)),
+            points.iter().all(|r| r.first().zip(r.last()).is_some_and(|(a, b)| same(a, b))),
+        ];
         // a ring whose hole has closed to a point is still a ring
-        let poles = pole(first) && pole(last) && !joined;
-        (around && (poles || joined)).then_some(Self { surface, size, poles, rows, columns })
+        let poles = [first, last].map(|row| !joined[0] && pole(row));
+        Some(Self { surface, size, poles, joined, rows, columns })
+    }
+
+    /// True when the surface has no border.
+    pub(super) fn is_closed(&self) -> bool {
+        self.joined[1] && (self.joined[0] || self.poles == [true; 2])
     }
 
     fn parallel(&self, eta: f64) -> impl Fn(f64) -> Point + use<'a, S> {
@@ -114,25 +122,15 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
     pub(super) fn mesh(&self, allowed: f64) -> (Mesh, f64, Further) {
         let [rows, columns] = self.spans();
         let (height, width) = (rows.len(), columns.len());
-        let mut vertices = Vec::with_capacity(height * width + 1);
-        let last = if self.poles { height } else { height - 1 };
-        for (i, eta) in self.rows.iter().enumerate().take(last + 1) {
-            let pole = self.poles && (i == 0 || i == height);
-            let omegas = self.columns.iter().take(if pole { 1 } else { width });
-            vertices.extend(omegas.map(|omega| self.surface.point(*eta, *omega)));
-        }
-        let index = |i: usize, j: usize| match self.poles {
-            true if i == 0 => 0,
-            true if i == height => 1 + (height - 1) * width,
-            true => 1 + (i - 1) * width + j % width,
-            false => (i % height) * width + j % width,
-        };
+        let (vertices, numbers) = self.vertices();
+        let number =
+            |[i, j]: [usize; 2]| numbers.get(i * (width + 1) + j).copied().unwrap_or_default();
         let mut triangles = Vec::with_capacity(2 * height * width);
         let (mut farthest, mut further) = (0.0f64, Further::default());
         for (i, row) in rows.iter().enumerate() {
             for (j, column) in columns.iter().enumerate() {
                 let corners = [[i, j], [i, j + 1], [i + 1, j + 1], [i + 1, j]];
-                let corners = corners.map(|[i, j]| index(i, j) as u32);
+                let corners = corners.map(number);
                 let (cell, distance) = self.cell(corners, &vertices, row, column);
                 // at a pole one of both has a corner twice
                 let proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
@@ -147,6 +145,44 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
             }
         }
         (Mesh::from_checked(vertices, triangles), farthest, further)
+    }
+
+    /// The vertices, and their numbers at all crossings of rows and columns.
+    fn vertices(&self) -> (Vec<Point>, Vec<u32>) {
+        let (height, width) = (self.rows.len() - 1, self.columns.len() - 1);
+        let (mut vertices, mut numbers) = (Vec::new(), Vec::<u32>::new());
+        for (i, eta) in self.rows.iter().enumerate() {
+            let pole = (i == 0 && self.poles[0]) || (i == height && self.poles[1]);
+            for (j, omega) in self.columns.iter().enumerate() {
+                let twin = match j > 0 && (pole || (self.joined[1] && j == width)) {
+                    true => Some(i * (width + 1)),
+                    false if self.joined[0] && i == height => Some(j),
+                    false => None,
+                };
+                let known = twin.and_then(|at| numbers.get(at).copied());
+                numbers.push(known.unwrap_or(vertices.len() as u32));
+                if known.is_none() {
+                    vertices.push(self.surface.point(*eta, *omega));
+                }
+            }
+        }
+        (vertices, numbers)
+    }
+
+    /// True when `∂/∂ω × ∂/∂η`, where triangles face, is inside at most places.
+    pub(super) fn faces_inwards(&self) -> bool {
+        let [eta, omega] = self.surface.domain();
+        // away from seams, where there may be no tangents
+        let shifted = |[from, to]: [f64; 2]| {
+            (0..8).map(move |i| from + (to - from) * (f64::from(i) + 0.4) / 8.0)
+        };
+        let vote = |(eta, omega): (f64, f64)| {
+            let ([along, around], normal) =
+                (self.surface.tangents(eta, omega)?, self.surface.normal(eta, omega)?);
+            Some(if around.cross(&along).dot(&normal) < 0.0 { 1 } else { -1 })
+        };
+        let places = shifted(eta).flat_map(|e| shifted(omega).map(move |o| (e, o)));
+        places.filter_map(vote).sum::<i32>() > 0
     }
 
     /// The triangles of a cell, with the better diagonal, and the largest distance of five points of the surface

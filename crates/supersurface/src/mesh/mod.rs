@@ -13,6 +13,7 @@
 mod angle_grid;
 mod chords;
 mod equal_arc;
+mod equal_arc_grid;
 mod march;
 mod mass;
 mod sample;
@@ -20,7 +21,8 @@ mod tessellate;
 mod triangles;
 
 pub use equal_arc::{SuperellipseArc, pilu_fisher, pilu_fisher_step};
+pub use equal_arc_grid::{Spacing, superellipsoid_grid, supertoroid_grid};
 pub use march::{MarchError, MarchOptions, Resolution, march};
 pub use sample::{SurfacePoint, SurfaceSampler};
-pub use tessellate::{TessellateError, Tessellation, tessellate};
+pub use tessellate::{TessellateError, Tessellation, tessellate, tessellate_patch};
 pub use triangles::{Mesh, MeshSampler};

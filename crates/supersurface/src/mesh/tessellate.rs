@@ -73,11 +73,54 @@ pub fn tessellate<S: Parametric + ?Sized>(
     surface: &S,
     tolerance: Option<f64>,
 ) -> Result<Tessellation, TessellateError> {
-    let mut grid = Grid::closed(surface).ok_or(TessellateError::Open)?;
-    if let Some(bad) = tolerance.filter(|t| !(*t > 0.0 && t.is_finite())) {
-        return Err(TessellateError::Tolerance(bad));
+    let mut grid = Grid::new(surface).filter(Grid::is_closed).ok_or(TessellateError::Open)?;
+    let tolerance = match tolerance {
+        Some(given) => checked(given)?,
+        None => grid.default_tolerance(),
+    };
+    let mut found = fine_enough(&mut grid, tolerance)?;
+    if found.mesh.volume() < 0.0 {
+        found.mesh = found.mesh.flipped();
     }
-    let tolerance = tolerance.unwrap_or_else(|| grid.default_tolerance());
+    Ok(found)
+}
+
+/// The mesh of any surface over its domain, closed or with a border, no farther than `tolerance` metres from it; its
+/// triangles face along the normals. [`TessellateError::Open`] only for surfaces without a size.
+///
+/// ```
+/// use supersurface::{mesh::tessellate_patch, shape::Superparaboloid};
+/// let bowl = Superparaboloid::new([0.1, 0.1, 0.05], [1.0, 1.0])?;
+/// let found = tessellate_patch(&bowl, 1e-4)?;
+/// // π/6 a/h² ((a² + 4h²)^(3/2) - a³) for the radius a and the height h
+/// let area = std::f64::consts::PI / 6.0 * 0.1 / 0.0025 * (0.02f64.powi(3).sqrt() - 0.001);
+/// assert!((found.mesh.area() / area - 1.0).abs() < 2e-3 && !found.mesh.is_watertight());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn tessellate_patch<S: Parametric + ?Sized>(
+    surface: &S,
+    tolerance: f64,
+) -> Result<Tessellation, TessellateError> {
+    let mut grid = Grid::new(surface).ok_or(TessellateError::Open)?;
+    let mut found = fine_enough(&mut grid, checked(tolerance)?)?;
+    if grid.faces_inwards() {
+        found.mesh = found.mesh.flipped();
+    }
+    Ok(found)
+}
+
+fn checked(tolerance: f64) -> Result<f64, TessellateError> {
+    match tolerance > 0.0 && tolerance.is_finite() {
+        true => Ok(tolerance),
+        false => Err(TessellateError::Tolerance(tolerance)),
+    }
+}
+
+/// Cuts the grid until its mesh is close enough.
+fn fine_enough<S: Parametric + ?Sized>(
+    grid: &mut Grid<'_, S>,
+    tolerance: f64,
+) -> Result<Tessellation, TessellateError> {
     let mut best = f64::INFINITY;
     if tolerance > FINEST * grid.size {
         grid.cut(tolerance);
@@ -89,7 +132,6 @@ pub fn tessellate<S: Parametric + ?Sized>(
             let (mesh, distance, further) = grid.mesh(CHECKED * tolerance);
             best = best.min(distance);
             if distance <= CHECKED * tolerance {
-                let mesh = if mesh.volume() < 0.0 { mesh.flipped() } else { mesh };
                 return Ok(Tessellation { mesh, tolerance, distance });
             }
             if !grid.refine(&further) {
