@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
+use crate::gallery::GalleryArgs;
 use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
 use crate::threads::MOST;
 
@@ -24,6 +25,8 @@ pub(crate) enum Command {
     Grasp(Box<GraspArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
+    /// Draws the figures that explain the family.
+    Gallery(GalleryArgs),
     /// What a shape is: size, volume, mass.
     Info(InfoArgs),
     /// A watertight triangle mesh of a shape.

@@ -7,24 +7,26 @@ use supersurface::shape::{InvalidShape, Posed, Superellipsoid, Supertoroid};
 use supersurface::{Pose, Vector};
 use supersurface_io::{Model, parse_shape};
 
-use super::sheet::{BLUE, ORANGE, Sheet};
+use super::sheet::{BLUE, ORANGE, Sheet, box_corners};
 use crate::exit::Failure;
 
 /// The teddy bear, as a shape file.
 const BEAR: &str = include_str!("bear.json");
 
 pub(super) fn combinations() -> Result<Image, Failure> {
-    let mut sheet = Sheet::new("Boolean trees by R-functions, and a bear of ten parts at nine joints", 4);
+    let mut sheet =
+        Sheet::new("Boolean trees by R-functions, and a bear of ten parts at nine joints", 4);
     let fine = MarchOptions { resolution: Resolution::Count(90), ..MarchOptions::default() };
     for (caption, solid) in trees().map_err(Failure::input)? {
         sheet.mesh(caption, &march(&solid, &fine).map_err(Failure::input)?, ORANGE);
     }
-    let Model::Assembly(bear) = parse_shape("bear.json", BEAR.as_bytes()).map_err(Failure::input)?
+    let Model::Assembly(bear) =
+        parse_shape("bear.json", BEAR.as_bytes()).map_err(Failure::input)?
     else {
         return Err(Failure::input("bear.json: is no assembly"));
     };
     let bodies = bear.bodies(&bear.rest_rotations());
-    let corners: Vec<_> = bodies.iter().flat_map(supersurface::shape::box_corners).collect();
+    let corners: Vec<_> = bodies.iter().flat_map(box_corners).collect();
     sheet.seen_from(Vector::new(0.5, 1.8, 0.5), "assembly", &corners, |picture| {
         for body in &bodies {
             picture.solid(body.shape(), body.pose(), [170, 120, 70], 1.0);
@@ -55,7 +57,9 @@ fn trees() -> Result<Vec<(&'static str, CombinedSolid)>, InvalidShape> {
         ("intersection", ball()?.intersection(bar(upright)?, Alpha::SMOOTH)),
         (
             "difference",
-            ball()?.difference(bar(upright)?, Alpha::SMOOTH).difference(bar(across)?, Alpha::SMOOTH),
+            ball()?
+                .difference(bar(upright)?, Alpha::SMOOTH)
+                .difference(bar(across)?, Alpha::SMOOTH),
         ),
         ("blended union", ring.blend_union(bar(across)?, Blend::new(0.3, [0.5, 0.5])?)),
     ])

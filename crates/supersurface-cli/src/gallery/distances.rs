@@ -25,13 +25,14 @@ fn around(reach: [f64; 3], count: u64) -> Vec<Point> {
         let mut stream = Stream::new(8, i);
         let v = Vector::from_fn(|_, _| stream.normal()).normalize();
         let v = Vector::new(v.x.abs(), -v.y.abs(), v.z);
-        Point::from(v.component_mul(&reach.into()))
+        Point::from(v.component_mul(&Vector::from(reach)))
     };
     (0..count).map(place).collect()
 }
 
 pub(super) fn radial() -> Result<Image, Failure> {
-    let mut sheet = Sheet::new("Distances: along the ray from the centre (red), nearest (green)", 3);
+    let mut sheet =
+        Sheet::new("Distances: along the ray from the centre (red), nearest (green)", 3);
     for e in [[0.3, 0.3], [1.0, 1.0], [0.3, 1.6]] {
         let shape = Superellipsoid::new([1.0, 0.6, 0.8], e).map_err(Failure::input)?;
         let finder = ClosestFinder::superellipsoid(&shape);
@@ -51,7 +52,8 @@ pub(super) fn radial() -> Result<Image, Failure> {
 }
 
 pub(super) fn meridian() -> Result<Image, Failure> {
-    let title = "Distances: from the mean superellipse in the meridian plane (red), nearest (green)";
+    let title =
+        "Distances: from the mean superellipse in the meridian plane (red), nearest (green)";
     let mut sheet = Sheet::new(title, 3);
     for e in [[0.4, 0.4], [1.0, 1.0], [1.6, 0.6]] {
         let shape = Supertoroid::new([0.3, 0.25, 0.4], 3.0, e).map_err(Failure::input)?;

@@ -7,7 +7,7 @@ use supersurface::shape::{Parametric, Superellipsoid, Supertoroid};
 use supersurface::surface::Solid;
 use supersurface::{Point, Pose};
 
-use super::sheet::{BLUE, GREEN, INK, ORANGE, RED, Sheet};
+use super::sheet::{BLUE, GREEN, INK, ORANGE, RED, Sheet, box_corners};
 use crate::exit::Failure;
 
 const EXPONENTS: [f64; 5] = [0.1, 0.5, 1.0, 1.9, 2.5];
@@ -27,8 +27,7 @@ pub(super) fn supertoroids() -> Result<Image, Failure> {
     let mut sheet = Sheet::new("Supertoroids, a4 = 3: ε1 down, ε2 across", EXPONENTS.len());
     for e1 in EXPONENTS {
         for e2 in EXPONENTS {
-            let shape =
-                Supertoroid::new([1.0, 1.0, 1.4], 3.0, [e1, e2]).map_err(Failure::input)?;
+            let shape = Supertoroid::new([1.0, 1.0, 1.4], 3.0, [e1, e2]).map_err(Failure::input)?;
             sheet.solid(format!("ε1 = {e1}, ε2 = {e2}"), &shape.into(), ORANGE);
         }
     }
@@ -39,8 +38,7 @@ pub(super) fn supertoroids() -> Result<Image, Failure> {
 pub(super) fn seams() -> Result<Image, Failure> {
     let mut sheet = Sheet::new("Seams η = kπ/2 (red) and ω = kπ/2 (black), poles (dots)", 3);
     for e in [[0.3, 0.3], [1.0, 1.0], [1.6, 0.6]] {
-        let shape: Solid =
-            Superellipsoid::new([1.0, 0.8, 1.2], e).map_err(Failure::input)?.into();
+        let shape: Solid = Superellipsoid::new([1.0, 0.8, 1.2], e).map_err(Failure::input)?.into();
         draw_seams(&mut sheet, &shape, &[0.0], &format!("superellipsoid, ε = {e:?}"));
     }
     for e in [[0.3, 1.0], [1.0, 1.0], [1.6, 0.6]] {
@@ -55,7 +53,7 @@ pub(super) fn seams() -> Result<Image, Failure> {
 fn draw_seams(sheet: &mut Sheet, solid: &Solid, etas: &[f64], caption: &str) {
     let [eta_range, _] = solid.domain();
     let closed = eta_range[0] < -FRAC_PI_2;
-    sheet.cell(caption, &supersurface::shape::box_corners(solid), |picture| {
+    sheet.cell(caption, &box_corners(solid), |picture| {
         picture.solid(solid, &Pose::identity(), [150, 180, 215], 1.0);
         for eta in etas {
             curve(picture, RED, |t| solid.point(*eta, -PI + 2.0 * PI * t));
@@ -88,15 +86,14 @@ pub(super) fn cusps() -> Result<Image, Failure> {
     let mut sheet = Sheet::new("Normals, and cusps (red) where there are none: ε ≥ 2", 3);
     for e in [[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [1.0, 2.6], [2.6, 1.0], [3.0, 3.0]] {
         let shape = Superellipsoid::new([1.0; 3], e).map_err(Failure::input)?;
-        let around = supersurface::shape::box_corners(&shape);
+        let around = box_corners(&shape);
         sheet.cell(format!("ε = {e:?}"), &around, |picture| {
-            picture.solid(&shape.into(), &Pose::identity(), [165, 195, 165], 1.0);
+            picture.solid(&Solid::from(shape), &Pose::identity(), [165, 195, 165], 1.0);
             let mut cusps = Vec::new();
             for i in -4..=4 {
                 for k in -8..8 {
                     // away from the seams, and on them
-                    let (eta, omega) =
-                        (f64::from(i) * PI / 8.0, (f64::from(k)) * PI / 8.0);
+                    let (eta, omega) = (f64::from(i) * PI / 8.0, (f64::from(k)) * PI / 8.0);
                     let p = shape.point(eta, omega);
                     match shape.normal(eta, omega) {
                         Some(n) => {

@@ -52,8 +52,12 @@ fn others() -> Result<Vec<(&'static str, Mesh)>, Failure> {
             [vec![0.2, 0.9, 1.6, 0.4], vec![0.3, 1.0, 1.8, 1.0, 0.3, 1.0, 1.8, 1.0]];
         let star = Superformula::new(6.0, [0.6, 1.2, 1.2], [1.0; 2])?;
         let round = Superformula::new(4.0, [4.0, 4.0, 4.0], [1.0; 2])?;
-        let planes =
-            [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.6, 0.6, 0.6, 0.3]];
+        let planes = [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.6, 0.6, 0.6, 0.3],
+        ];
         let extended = ExtendedSuperellipsoid::new([1.0; 3], &profile, &section)?;
         let (a, e) = ([0.5, 0.5, 0.5], [0.8, 0.8]);
         Ok(vec![

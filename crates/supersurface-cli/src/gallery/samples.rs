@@ -2,21 +2,22 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use supersurface::mesh::SurfaceSampler;
+use supersurface::mesh::{Spacing, SurfaceSampler, superellipsoid_grid};
 use supersurface::numeric::random::Stream;
 use supersurface::picture::{Image, Picture};
 use supersurface::shape::{Parametric, Superellipsoid};
 use supersurface::surface::Solid;
 use supersurface::{Point, Vector};
 
-use super::sheet::{INK, Sheet};
+use super::sheet::{INK, Sheet, box_corners};
 use crate::exit::Failure;
 
 pub(super) fn samples() -> Result<Image, Failure> {
     let shape = Superellipsoid::new([1.0, 1.0, 1.4], [0.3, 0.5]).map_err(Failure::input)?;
     let solid = Solid::from(shape).tapered([-0.3, -0.3]).map_err(Failure::input)?;
-    let mut sheet = Sheet::new("Samples of a tapered superellipsoid and of one with ε = [0.3, 0.5]", 4);
-    let corners = supersurface::shape::box_corners(&solid);
+    let mut sheet =
+        Sheet::new("Samples of a tapered superellipsoid and of one with ε = [0.3, 0.5]", 5);
+    let corners = box_corners(&solid);
     let uniform = |solid: &Solid, count| -> Result<Vec<Point>, Failure> {
         let sampler = SurfaceSampler::new(solid, None).map_err(Failure::input)?;
         Ok(sampler.points(count, 1).into_iter().map(|s| s.point).collect())
@@ -29,7 +30,7 @@ pub(super) fn samples() -> Result<Image, Failure> {
     }
     sheet.cell("noise, cut by a plane", &corners, |picture| dots(picture, &noisy));
 
-    let corners = supersurface::shape::box_corners(&shape);
+    let corners = box_corners(&shape);
     let by_angles: Vec<Point> = (0..2000)
         .map(|i| {
             let mut stream = Stream::new(11, i);
@@ -37,8 +38,12 @@ pub(super) fn samples() -> Result<Image, Failure> {
         })
         .collect();
     sheet.cell("uniform in the angles", &corners, |picture| dots(picture, &by_angles));
-    let by_arcs = equal_arcs(&shape)?;
-    sheet.cell("equal arcs", &corners, |picture| dots(picture, &by_arcs));
+    for (caption, spacing) in
+        [("Pilu and Fisher", Spacing::PiluFisher), ("equal arcs", Spacing::EqualArc)]
+    {
+        let points = superellipsoid_grid(&shape, spacing, 0.09).map_err(Failure::input)?;
+        sheet.cell(caption, &corners, |picture| dots(picture, &points));
+    }
     let by_area = uniform(&shape.into(), 2000)?;
     sheet.cell("uniform over the area", &corners, |picture| dots(picture, &by_area));
     Ok(sheet.finish())

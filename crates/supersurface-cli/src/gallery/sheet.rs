@@ -1,6 +1,8 @@
 //! A figure is a sheet of small pictures in rows, each with a line of text under it.
 
+use supersurface::mesh::Mesh;
 use supersurface::picture::{Colour, Image, Picture, View};
+use supersurface::shape::Implicit;
 use supersurface::surface::Solid;
 use supersurface::{Point, Pose, Vector};
 
@@ -54,9 +56,16 @@ impl Sheet {
 
     /// A solid alone.
     pub(super) fn solid(&mut self, caption: impl Into<String>, solid: &Solid, colour: Colour) {
-        let around = supersurface::shape::box_corners(solid);
+        let around = box_corners(solid);
         self.cell(caption, &around, |picture| {
             picture.solid(solid, &Pose::identity(), colour, 1.0);
+        });
+    }
+
+    /// A mesh alone.
+    pub(super) fn mesh(&mut self, caption: impl Into<String>, mesh: &Mesh, colour: Colour) {
+        self.cell(caption, mesh.vertices(), |picture| {
+            picture.mesh(mesh, colour, 1.0);
         });
     }
 
@@ -73,4 +82,13 @@ impl Sheet {
         }
         image
     }
+}
+
+/// Corners of the box around a solid.
+pub(super) fn box_corners(solid: &impl Implicit) -> Vec<Point> {
+    let [low, high] = solid.bounds();
+    let corner = |k: usize| {
+        Point::from(Vector::from_fn(|i, _| if k >> i & 1 == 0 { low[i] } else { high[i] }))
+    };
+    (0..8).map(corner).collect()
 }

@@ -2,12 +2,15 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::json;
 use supersurface::measure::first_hit;
-use supersurface::mesh::{MeshSampler, SurfaceSampler};
+use supersurface::mesh::{
+    MeshSampler, Spacing, SurfaceSampler, superellipsoid_grid, supertoroid_grid,
+};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{Implicit, Ray};
+use supersurface::surface::Solid;
 use supersurface::{Direction, Point, Vector};
 use supersurface_io::{Model, write_points};
 
@@ -26,6 +29,12 @@ pub(crate) struct SampleArgs {
     /// Where to: .pcd, .ply, .xyz, .txt or .csv. Lengths are metres.
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
+    /// How points are spread; all but `area` lie on a grid of a superellipsoid or supertoroid and need --distance.
+    #[arg(long, value_enum, default_value_t = Spread::Area, requires_if("angle", "distance"), requires_if("pilu-fisher", "distance"), requires_if("equal-arc", "distance"))]
+    spread: Spread,
+    /// About how far apart points of a grid are, in metres.
+    #[arg(long, value_name = "M")]
+    distance: Option<f64>,
     /// Points that are drawn, uniform over the area; cuts leave fewer.
     #[arg(long, short = 'n', value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=MOST))]
     count: u64,
@@ -61,6 +70,19 @@ pub(crate) struct SampleArgs {
     json: bool,
 }
 
+/// How points are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Spread {
+    /// At random, uniform over the area.
+    Area,
+    /// By equal steps of the two angles.
+    Angle,
+    /// About evenly along section and meridians, by Pilu and Fisher's steps.
+    PiluFisher,
+    /// By equal arcs of section and meridians.
+    EqualArc,
+}
+
 /// Draws and writes the points.
 pub(crate) fn run(args: &SampleArgs) -> Result<(), Failure> {
     if !(args.noise >= 0.0 && args.noise.is_finite()) {
@@ -73,7 +95,16 @@ pub(crate) fn run(args: &SampleArgs) -> Result<(), Failure> {
         None => None,
     };
     let model = args.which.model()?;
-    let mut points = drawn(&args.which.name(), &model, args.count, args.seed)?;
+    let spacing = match args.spread {
+        Spread::Area => None,
+        Spread::Angle => Some(Spacing::Angle),
+        Spread::PiluFisher => Some(Spacing::PiluFisher),
+        Spread::EqualArc => Some(Spacing::EqualArc),
+    };
+    let mut points = match spacing.zip(args.distance) {
+        Some((spacing, distance)) => grid(&args.which.name(), &model, spacing, distance)?,
+        None => drawn(&args.which.name(), &model, args.count, args.seed)?,
+    };
     let all = points.len();
     if let Some((normal, offset)) = cut {
         points.retain(|(p, _)| normal.dot(&p.coords) <= offset);
@@ -125,7 +156,9 @@ fn drawn(
         let sampler = SurfaceSampler::new(solid.shape(), None)
             .map_err(|e| Failure::input(format!("{name}: {e}")))?;
         let points = sampler.points(count as usize, seed);
-        return Ok(points.into_iter().map(|s| (pose * s.point, pose * s.normal)).collect());
+        let placed =
+            points.into_iter().map(|s| (pose * s.point, pose * facing(&s.point, s.normal)));
+        return Ok(placed.collect());
     }
     let mesh = meshed(name, model, Fineness { tolerance: None, cells: 200 })?.mesh;
     let sampler = MeshSampler::new(mesh);
@@ -134,6 +167,37 @@ fn drawn(
         sampler.sample_at(std::array::from_fn(|_| stream.uniform()))
     };
     Ok((0..count).filter_map(draw).collect())
+}
+
+/// A grid of points with their normals.
+fn grid(
+    name: &str,
+    model: &Model,
+    spacing: Spacing,
+    distance: f64,
+) -> Result<Vec<(Point, Direction)>, Failure> {
+    let wrong = || {
+        Failure::usage(format!(
+            "{name}: only superellipsoids and supertoroids, not deformed, have such grids"
+        ))
+    };
+    let Model::Solid(solid) = model else { return Err(wrong()) };
+    let points = match solid.shape() {
+        Solid::Superellipsoid(s) => superellipsoid_grid(s, spacing, distance),
+        Solid::Supertoroid(s) => supertoroid_grid(s, spacing, distance),
+        _ => return Err(wrong()),
+    };
+    let pose = solid.pose();
+    let placed = |p: Point| {
+        let normal = Direction::try_new(solid.shape().gradient(&p), 0.0);
+        (pose * p, pose * facing(&p, normal))
+    };
+    Ok(points.map_err(Failure::usage)?.into_iter().map(placed).collect())
+}
+
+/// The normal; on a cusp, which has none, away from the centre.
+fn facing(p: &Point, normal: Option<Direction>) -> Direction {
+    normal.or(Direction::try_new(p.coords, 0.0)).unwrap_or(Vector::z_axis())
 }
 
 /// Whether nothing of the model is between a point of it and the eye.
