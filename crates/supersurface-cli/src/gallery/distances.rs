@@ -7,7 +7,7 @@ use supersurface::picture::{Image, Picture};
 use supersurface::shape::{Superellipsoid, Supertoroid};
 use supersurface::{Point, Pose, Vector};
 
-use super::sheet::{BLUE, GREEN, INK, RED, Sheet};
+use super::sheet::{BLUE, GREEN, INK, RED, Sheet, box_corners};
 use crate::exit::Failure;
 
 /// Lines from points to their feet on the surface.
@@ -24,7 +24,7 @@ fn around(reach: [f64; 3], count: u64) -> Vec<Point> {
     let place = |i| {
         let mut stream = Stream::new(8, i);
         let v = Vector::from_fn(|_, _| stream.normal()).normalize();
-        let v = Vector::new(v.x.abs(), -v.y.abs(), v.z);
+        let v = Vector::new(v.x.abs(), -v.y.abs(), v.z.abs() - 0.15);
         Point::from(v.component_mul(&Vector::from(reach)))
     };
     (0..count).map(place).collect()
@@ -42,7 +42,8 @@ pub(super) fn radial() -> Result<Image, Failure> {
         };
         let along = feet(&|p| shape.radial_foot(p));
         let nearest = feet(&|p| finder.find(p).map(|c| c.point));
-        sheet.cell(format!("ε = {e:?}"), &points, |picture| {
+        let shown = [points.clone(), box_corners(&shape)].concat();
+        sheet.cell(format!("ε = {e:?}"), &shown, |picture| {
             picture.solid(&shape.into(), &Pose::identity(), [170, 195, 225], 1.0);
             lines(picture, &along, RED);
             lines(picture, &nearest, GREEN);
@@ -73,7 +74,8 @@ pub(super) fn meridian() -> Result<Image, Failure> {
                 shape.meridian_foot(&(turn * Point::new(9.0, 0.0, 0.0))).map(|f| f.mean_point)
             })
             .collect();
-        sheet.cell(format!("ε = {e:?}"), &points, |picture| {
+        let shown = [points.clone(), box_corners(&shape)].concat();
+        sheet.cell(format!("ε = {e:?}"), &shown, |picture| {
             picture.solid(&shape.into(), &Pose::identity(), BLUE, 0.55);
             for pair in ring.windows(2) {
                 if let [a, b] = pair {

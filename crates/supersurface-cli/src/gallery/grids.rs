@@ -36,7 +36,10 @@ pub(super) fn supertoroids() -> Result<Image, Failure> {
 
 /// The lines where an angle is a multiple of π/2, and the poles.
 pub(super) fn seams() -> Result<Image, Failure> {
-    let mut sheet = Sheet::new("Seams η = kπ/2 (red) and ω = kπ/2 (black), poles (dots)", 3);
+    let mut sheet = Sheet::new(
+        "Seams, where an angle along (red) or around z (black) is a multiple of 90 degrees, and poles",
+        3,
+    );
     for e in [[0.3, 0.3], [1.0, 1.0], [1.6, 0.6]] {
         let shape: Solid = Superellipsoid::new([1.0, 0.8, 1.2], e).map_err(Failure::input)?.into();
         draw_seams(&mut sheet, &shape, &[0.0], &format!("superellipsoid, ε = {e:?}"));
@@ -83,7 +86,7 @@ fn curve(picture: &mut Picture, colour: Colour, at: impl Fn(f64) -> Point) {
 
 /// Exponents from 2 on: no normal where the surface comes to a point or an edge.
 pub(super) fn cusps() -> Result<Image, Failure> {
-    let mut sheet = Sheet::new("Normals, and cusps (red) where there are none: ε ≥ 2", 3);
+    let mut sheet = Sheet::new("Normals, and cusps (red) where there are none: ε from 2 on", 3);
     for e in [[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [1.0, 2.6], [2.6, 1.0], [3.0, 3.0]] {
         let shape = Superellipsoid::new([1.0; 3], e).map_err(Failure::input)?;
         let around = box_corners(&shape);

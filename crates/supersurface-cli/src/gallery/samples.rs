@@ -5,11 +5,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use supersurface::mesh::{Spacing, SurfaceSampler, superellipsoid_grid};
 use supersurface::numeric::random::Stream;
 use supersurface::picture::{Image, Picture};
-use supersurface::shape::{Parametric, Superellipsoid};
+use supersurface::shape::{Implicit, Parametric, Superellipsoid};
 use supersurface::surface::Solid;
 use supersurface::{Point, Vector};
 
-use super::sheet::{INK, Sheet, box_corners};
+use super::sheet::{INK, Sheet, VIEW, box_corners};
 use crate::exit::Failure;
 
 pub(super) fn samples() -> Result<Image, Failure> {
@@ -23,12 +23,12 @@ pub(super) fn samples() -> Result<Image, Failure> {
         Ok(sampler.points(count, 1).into_iter().map(|s| s.point).collect())
     };
     let mut noisy = uniform(&solid, 6000)?;
-    noisy.retain(|p| p.x + 0.5 * p.z <= 0.3);
+    noisy.retain(|p| p.x + 0.5 * p.z >= -0.3);
     for (i, p) in noisy.iter_mut().enumerate() {
         let mut stream = Stream::new(10, i as u64);
         *p += Vector::from_fn(|_, _| 0.03 * stream.normal());
     }
-    sheet.cell("noise, cut by a plane", &corners, |picture| dots(picture, &noisy));
+    sheet.cell("noise, cut by a plane", &corners, |picture| dots(picture, &solid, &noisy));
 
     let corners = box_corners(&shape);
     let by_angles: Vec<Point> = (0..2000)
@@ -37,19 +37,21 @@ pub(super) fn samples() -> Result<Image, Failure> {
             shape.point(stream.between(-FRAC_PI_2, FRAC_PI_2), stream.between(-PI, PI))
         })
         .collect();
-    sheet.cell("uniform in the angles", &corners, |picture| dots(picture, &by_angles));
+    sheet.cell("uniform in the angles", &corners, |picture| dots(picture, &shape, &by_angles));
     for (caption, spacing) in
         [("Pilu and Fisher", Spacing::PiluFisher), ("equal arcs", Spacing::EqualArc)]
     {
-        let points = superellipsoid_grid(&shape, spacing, 0.09).map_err(Failure::input)?;
-        sheet.cell(caption, &corners, |picture| dots(picture, &points));
+        let points = superellipsoid_grid(&shape, spacing, 0.13).map_err(Failure::input)?;
+        sheet.cell(caption, &corners, |picture| dots(picture, &shape, &points));
     }
     let by_area = uniform(&shape.into(), 2000)?;
-    sheet.cell("uniform over the area", &corners, |picture| dots(picture, &by_area));
+    sheet.cell("uniform over the area", &corners, |picture| dots(picture, &shape, &by_area));
     Ok(sheet.finish())
 }
 
-/// Points of the half that faces the viewer.
-fn dots(picture: &mut Picture, points: &[Point]) {
-    picture.points(points, |_| INK, Some(2.5));
+/// Points of the side that faces the viewer.
+fn dots(picture: &mut Picture, solid: &impl Implicit, points: &[Point]) {
+    let facing = |p: &&Point| solid.gradient(p).dot(&VIEW) > 0.0;
+    let seen: Vec<Point> = points.iter().filter(facing).copied().collect();
+    picture.points(&seen, |_| INK, Some(2.5));
 }

@@ -8,6 +8,8 @@ use supersurface::{Point, Pose, Vector};
 
 pub(super) const WIDTH: usize = 300;
 pub(super) const HEIGHT: usize = 240;
+/// Towards the viewer.
+pub(super) const VIEW: Vector = Vector::new(0.9, -1.5, 1.1);
 const CAPTION: usize = 26;
 const TITLE: usize = 44;
 pub(super) const INK: Colour = [28, 30, 34];
@@ -35,7 +37,7 @@ impl Sheet {
         around: &[Point],
         draw: impl FnOnce(&mut Picture),
     ) {
-        self.seen_from(Vector::new(0.9, -1.5, 1.1), caption, around, draw);
+        self.seen_from(VIEW, caption, around, draw);
     }
 
     /// The same, seen from another side.
