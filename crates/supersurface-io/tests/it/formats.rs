@@ -157,6 +157,21 @@ fn depth_becomes_points() {
 }
 
 #[test]
+fn a_distortion_that_cannot_be_undone_is_refused() {
+    let with = |distortion| {
+        let mut options = camera();
+        options.camera.as_mut().unwrap().distortion = distortion;
+        parse("depth.png", &depth_png(), &options)
+    };
+    with([-0.1, 0.02, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+    // folds within the image; a pole of the denominator; numbers without end
+    for k in [[-9.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 50.0], [1e300, 0.0, 0.0, 0.0]] {
+        let error = with([k[0], k[3], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap_err().to_string();
+        assert!(error.contains("depth.png") && error.contains("--distortion"), "{error}");
+    }
+}
+
+#[test]
 fn text_with_names_commas_and_comments() {
     let csv = "# made here\nname,z,x,y\na,3,1,2\nb,6,4,5\n";
     let cloud = parse("two.csv", csv.as_bytes(), &Default::default()).unwrap().cloud;
