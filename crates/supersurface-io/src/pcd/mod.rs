@@ -24,13 +24,18 @@ pub(crate) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Read, Fault> 
         Encoding::Binary => binary::read(&header, body, &wanted, &mut rows)?,
         Encoding::Compressed => binary::read_compressed(&header, body, &wanted, &mut rows)?,
     }
+    let world = world(&header.viewpoint);
+    if world.is_none() {
+        warnings.push("VIEWPOINT is no pose (a length of its quaternion is 0, or a number not finite): not used".into());
+    }
+    let world = world.filter(|pose| *pose != Pose::identity());
     let organised = header.height > 1 && header.width > 1;
     let cloud = PointCloud {
         points: rows.points,
         colours: rows.colours,
         labels: rows.labels,
         grid: organised.then_some([header.width, header.height]),
-        world: world(&header.viewpoint),
+        world,
         ..PointCloud::default()
     };
     Ok(Read { cloud, warnings })
@@ -95,11 +100,11 @@ impl Rows {
     }
 }
 
-/// The pose that VIEWPOINT gives; `None` for the identity and for what is no pose.
+/// The pose that VIEWPOINT gives; `None` for what is no pose.
 fn world(viewpoint: &[f64; 7]) -> Option<Pose> {
     let [x, y, z, qw, qx, qy, qz] = *viewpoint;
     let q = UnitQuaternion::try_new(Quaternion::new(qw, qx, qy, qz), 1e-6)?;
     let pose = Pose::from_parts(Vector::new(x, y, z).into(), q);
     let finite = viewpoint.iter().all(|v| v.is_finite());
-    (finite && pose != Pose::identity()).then_some(pose)
+    finite.then_some(pose)
 }
