@@ -63,6 +63,29 @@ fn output_that_cannot_be_written_is_5_and_named() {
 }
 
 #[test]
+fn outputs_that_would_replace_each_other_or_an_input_are_2() {
+    let [cloud, new, toml] = ["same.xyz", "same.out", "same.toml"].map(scratch);
+    std::fs::write(&cloud, "1 1 1\n").unwrap();
+    std::fs::write(&toml, "name = 1\n").unwrap();
+    let round = new.parent().unwrap().join(".").join("same.out");
+    for arguments in [
+        &["demo", "--labels", text(&new), "--grasps", text(&round)][..],
+        &["demo", "--grasps", text(&new), "--png", text(&new)],
+        &["demo", "--gripper", text(&toml), "--png", text(&toml)],
+        &["grasp", text(&cloud), "--labels", text(&cloud)],
+        &["grasp", "-", "--mask", text(&cloud), "--png", text(&cloud)],
+        &["grasp", "-", "--camera", text(&cloud), "--grasps", text(&cloud)],
+    ] {
+        let ran = run(arguments).ended(2);
+        assert!(ran.stderr.contains("same.") && ran.stderr.contains("another output"));
+        assert!(ran.stdout.is_empty() && !new.exists());
+    }
+    assert_eq!(std::fs::read(&cloud).unwrap(), b"1 1 1\n");
+    #[cfg(unix)]
+    run(&["demo", "--labels", "/dev/null", "--grasps", "/dev/null"]).ended(0);
+}
+
+#[test]
 fn an_output_that_fails_costs_no_other() {
     let [grasps, picture, empty] = ["kept.json", "kept.png", "empty.xyz"].map(scratch);
     let outputs = ["--labels", "/no_such_folder/l", "--grasps", text(&grasps), "--json"];
