@@ -99,7 +99,7 @@ impl Run<'_> {
         };
         let told = &mut |stage| progress.stage(stage);
         let found = pipeline::run(&source.cloud, gripper, &options, told);
-        let found = found.map_err(|error| self.no_result(&error));
+        let found = found.map_err(|error| self.no_result(&error, &source.cloud));
         let result = found.as_ref().map_err(String::as_str);
         let mut left = self.leave(result, Some(&source), gripper, progress).into_iter();
         match result {
@@ -113,9 +113,10 @@ impl Run<'_> {
     }
 
     /// Why the pipeline gave nothing, and the mend.
-    fn no_result(&self, error: &SegmentError) -> String {
+    fn no_result(&self, error: &SegmentError, cloud: &PointCloud) -> String {
         let mend = match error {
             SegmentError::NoSupport { .. } => "; if the cloud is one object, pass --segmented",
+            SegmentError::NoFinitePoints { .. } if cloud.finite_count() > 0 => "; check --units",
             _ => "",
         };
         format!("{}: {error}{mend}", self.name)

@@ -79,7 +79,11 @@ impl Rows {
     /// Room for what the header promises, as far as the body can hold it.
     fn new(header: &Header, wanted: &Wanted, available: usize) -> Result<Self, Fault> {
         let count = header.points.min(available.saturating_mul(100));
-        let short = || Fault::new("POINTS", format!("{count} points are too many for the memory"));
+        let short = || {
+            let problem =
+                format!("{} points do not fit into memory: thin the cloud out", header.points);
+            Fault::new("POINTS", problem)
+        };
         let some = |wanted: bool| if wanted { count } else { 0 };
         Ok(Self {
             points: room(count.min(1 << 22)).ok_or_else(short)?,
