@@ -1,12 +1,14 @@
 //! One run of the pipeline and everything that it leaves: table or JSON, labels, grasps, picture.
 
+use std::path::{Path, PathBuf};
+
 use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
 use supersurface::grasp::Gripper;
 use supersurface::pipeline::{self, Objects, Options, Report};
 use supersurface::segment::SegmentError;
 use supersurface_io::{
-    ReportHead, failure_json, report_json, write_grasps, write_labels, write_png,
+    BUILT_IN_GRIPPERS, ReportHead, failure_json, report_json, write_grasps, write_labels, write_png,
 };
 
 use crate::args::{HowArgs, OutputArgs};
@@ -29,6 +31,8 @@ pub(crate) struct Run<'a> {
     pub(crate) output: &'a OutputArgs,
     /// Name of the input, for the report.
     pub(crate) name: &'a str,
+    /// Files that are read, beside the gripper.
+    pub(crate) inputs: &'a [&'a Path],
 }
 
 impl Run<'_> {
@@ -39,6 +43,7 @@ impl Run<'_> {
         stage: (&'static str, String),
         source: impl FnOnce() -> Result<Source, Failure> + Send,
     ) -> Result<(), Failure> {
+        self.check_files()?;
         let gripper = supersurface_io::read_gripper(&self.how.gripper).map_err(Failure::input)?;
         let mut progress = Progress::new(self.output.quiet);
         let (pool, fewer) = threads::pool(self.how.threads)?;
@@ -47,6 +52,28 @@ impl Run<'_> {
         }
         progress.begin(stage.0, stage.1);
         pool.install(|| self.go(source, &gripper, progress))
+    }
+
+    /// No output may replace another one or what is read.
+    fn check_files(&self) -> Result<(), Failure> {
+        let built_in = BUILT_IN_GRIPPERS.iter().any(|(name, _)| *name == self.how.gripper);
+        let gripper = (!built_in).then_some(Path::new(&self.how.gripper));
+        let read = self.inputs.iter().copied().filter(|p| *p != Path::new("-")).chain(gripper);
+        let mut taken: Vec<PathBuf> = read.map(place).collect();
+        let OutputArgs { labels, grasps, png, .. } = self.output;
+        for (option, file) in [("--labels", labels), ("--grasps", grasps), ("--png", png)] {
+            let Some(file) = file else { continue };
+            let place = place(file);
+            // devices and pipes may take more than one
+            if taken.contains(&place) && (place.is_file() || !place.exists()) {
+                let file = file.display();
+                let problem =
+                    format!("{option} {file}: the file is read, or another output goes there");
+                return Err(Failure::usage(problem));
+            }
+            taken.push(place);
+        }
+        Ok(())
     }
 
     fn go(
@@ -72,7 +99,7 @@ impl Run<'_> {
         };
         let told = &mut |stage| progress.stage(stage);
         let found = pipeline::run(&source.cloud, gripper, &options, told);
-        let found = found.map_err(|error| self.no_result(&error));
+        let found = found.map_err(|error| self.no_result(&error, &source.cloud));
         let result = found.as_ref().map_err(String::as_str);
         let mut left = self.leave(result, Some(&source), gripper, progress).into_iter();
         match result {
@@ -86,9 +113,10 @@ impl Run<'_> {
     }
 
     /// Why the pipeline gave nothing, and the mend.
-    fn no_result(&self, error: &SegmentError) -> String {
+    fn no_result(&self, error: &SegmentError, cloud: &PointCloud) -> String {
         let mend = match error {
             SegmentError::NoSupport { .. } => "; if the cloud is one object, pass --segmented",
+            SegmentError::NoFinitePoints { .. } if cloud.finite_count() > 0 => "; check --units",
             _ => "",
         };
         format!("{}: {error}{mend}", self.name)
@@ -149,6 +177,13 @@ impl Run<'_> {
         let left = left.into_iter().map(|written| written.map_err(Failure::output));
         left.chain([print(&text)]).filter_map(Result::err).collect()
     }
+}
+
+/// Where a path leads, through all links; its file may not be there yet.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let new = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(new).unwrap_or_else(|| path.to_owned())
 }
 
 /// The frame of a grasp file: that of the cloud, or the one into which the camera's pose leads.

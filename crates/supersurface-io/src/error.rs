@@ -22,6 +22,16 @@ pub enum ReadError {
         /// Most bytes that are read.
         limit: u64,
     },
+    /// The memory does not hold the file.
+    #[error(
+        "{file}: its {bytes} bytes do not fit into memory; thin the cloud out, or crop it to the scene"
+    )]
+    NoMemory {
+        /// Name of the file.
+        file: String,
+        /// Its size.
+        bytes: u64,
+    },
     /// A format that is not read.
     #[error("{file}: unsupported format: {format}; {mend}")]
     Unsupported {

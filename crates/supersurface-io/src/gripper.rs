@@ -220,6 +220,8 @@ impl File {
         }
         let below = t.min_opening < t.max_opening;
         self.check(below, "min_opening", t.min_opening, "less than max_opening")?;
+        let below = t.clearance < t.max_opening;
+        self.check(below, "clearance", t.clearance, "less than max_opening, in metres")?;
         let rising = t.tip_arc.windows(2).all(|w| w[0][0] < w[1][0]);
         let finite = t.tip_arc.iter().flatten().all(|v| v.is_finite());
         self.check(

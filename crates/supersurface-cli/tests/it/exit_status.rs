@@ -55,11 +55,50 @@ fn no_table_is_4_with_a_report_whose_plane_is_null() {
 }
 
 #[test]
+fn a_bare_table_is_4_with_its_plane_as_the_report_document_says() {
+    let table: String = (0..3600)
+        .map(|k| format!("{} {} 1\n", 0.01 * f64::from(k % 60), 0.01 * f64::from(k / 60)))
+        .collect();
+    let ran =
+        run_on(&["grasp", "-", "--json", "--viewpoint", "0.3,0.3,0"], table.as_bytes()).ended(4);
+    let report = ran.json();
+    assert!(
+        report["plane"]["normal"].is_array() && report["objects"].as_array().unwrap().is_empty()
+    );
+    assert_eq!(report["message"], "nothing stands on the table");
+    let document = include_str!("../../../../docs/report.md");
+    assert!(document.contains("its `plane` is the table"));
+}
+
+#[test]
 fn output_that_cannot_be_written_is_5_and_named() {
     for option in ["--png", "--labels", "--grasps"] {
         let ran = run(&["demo", option, "/no_such_folder/file"]).ended(5);
         assert!(ran.stderr.contains("/no_such_folder/file"), "{}", ran.stderr);
     }
+}
+
+#[test]
+fn outputs_that_would_replace_each_other_or_an_input_are_2() {
+    let [cloud, new, toml] = ["same.xyz", "same.out", "same.toml"].map(scratch);
+    std::fs::write(&cloud, "1 1 1\n").unwrap();
+    std::fs::write(&toml, "name = 1\n").unwrap();
+    let round = new.parent().unwrap().join(".").join("same.out");
+    for arguments in [
+        &["demo", "--labels", text(&new), "--grasps", text(&round)][..],
+        &["demo", "--grasps", text(&new), "--png", text(&new)],
+        &["demo", "--gripper", text(&toml), "--png", text(&toml)],
+        &["grasp", text(&cloud), "--labels", text(&cloud)],
+        &["grasp", "-", "--mask", text(&cloud), "--png", text(&cloud)],
+        &["grasp", "-", "--camera", text(&cloud), "--grasps", text(&cloud)],
+    ] {
+        let ran = run(arguments).ended(2);
+        assert!(ran.stderr.contains("same.") && ran.stderr.contains("another output"));
+        assert!(ran.stdout.is_empty() && !new.exists());
+    }
+    assert_eq!(std::fs::read(&cloud).unwrap(), b"1 1 1\n");
+    #[cfg(unix)]
+    run(&["demo", "--labels", "/dev/null", "--grasps", "/dev/null"]).ended(0);
 }
 
 #[test]
@@ -101,10 +140,26 @@ fn a_full_standard_error_costs_no_status() {
 #[cfg(target_os = "linux")]
 #[test]
 fn more_threads_than_the_system_carries_are_fewer_with_a_warning() {
+    for absurd in ["0", "-1", "two", "99999999", "99999999999999999999999"] {
+        let mut command = command(&["demo", "-q"]);
+        finished(command.env("RAYON_NUM_THREADS", absurd)).ended(0);
+    }
     for line in ["\"$0\" demo --threads 64", "RAYON_NUM_THREADS=64 \"$0\" demo"] {
         let script = format!("ulimit -v 500000; {line}");
         let binary = env!("CARGO_BIN_EXE_supersurface");
         let ran = finished(Command::new("sh").args(["-c", &script, binary])).ended(0);
         assert!(ran.stderr.contains("instead of 64") && ran.stderr.contains("--threads"));
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_memory_does_not_hold_is_3_and_said_so() {
+    let file = scratch("sparse.xyz");
+    std::fs::File::create(&file).unwrap().set_len(1 << 30).unwrap();
+    let script = "ulimit -v 500000; exec \"$0\" grasp \"$1\"";
+    let binary = env!("CARGO_BIN_EXE_supersurface");
+    let ran = finished(Command::new("sh").args(["-c", script, binary, text(&file)])).ended(3);
+    std::fs::remove_file(&file).unwrap();
+    assert!(ran.stderr.contains("1073741824 bytes do not fit into memory"), "{}", ran.stderr);
 }

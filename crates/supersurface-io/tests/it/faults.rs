@@ -105,3 +105,45 @@ fn what_a_file_says_is_quoted_short_and_harmless() {
         }
     }
 }
+
+#[test]
+fn a_long_header_line_is_read_whole_or_refused() {
+    let wide = |names: usize| {
+        let fields: String = (0..names).map(|k| format!(" field{k}")).collect();
+        let all = |word: &str| format!(" {word}").repeat(names + 3);
+        let (size, kind) = (all("4"), all("F"));
+        let row = all("1");
+        format!(
+            "VERSION 0.7\nFIELDS x y z{fields}\nSIZE{size}\nTYPE{kind}\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n{row}\n"
+        )
+    };
+    assert_eq!(
+        parse("w.pcd", wide(2000).as_bytes(), &Default::default()).unwrap().cloud.points.len(),
+        1
+    );
+    let error =
+        parse("w.pcd", wide(100_000).as_bytes(), &Default::default()).unwrap_err().to_string();
+    assert!(error.contains("w.pcd") && error.contains("line 2"), "{error}");
+}
+
+#[test]
+fn a_viewpoint_that_is_no_pose_is_told() {
+    let file = String::from_utf8(pcd("ascii")).unwrap();
+    for bad in ["banana", "0 0 1", "0 0 0 1 0 0 zero", "0 0 0 1 0 0 0 0", ""] {
+        let file = file.replace("VIEWPOINT 0 0 1 0 1 0 0", &format!("VIEWPOINT {bad}"));
+        let error = parse("v.pcd", file.as_bytes(), &Default::default()).unwrap_err().to_string();
+        for word in ["v.pcd", "line 9", "VIEWPOINT", "0 0 0 1 0 0 0"] {
+            assert!(error.contains(word), "{error}");
+        }
+    }
+    for (odd, warnings) in [("0 0 0 0 0 0 0", 1), ("nan 0 0 1 0 0 0", 1), ("0 0 0 1 0 0 0", 0)] {
+        let file = file.replace("VIEWPOINT 0 0 1 0 1 0 0", &format!("VIEWPOINT {odd}"));
+        let read = parse("v.pcd", file.as_bytes(), &Default::default()).unwrap();
+        assert_eq!(
+            (read.cloud.world, read.warnings.len()),
+            (None, warnings),
+            "{:?}",
+            read.warnings
+        );
+    }
+}

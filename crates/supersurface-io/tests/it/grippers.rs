@@ -33,6 +33,7 @@ fn a_broken_file_names_file_and_field() {
         (cup, "[[1.0, 0.0, 0.0", "[[2.0, 0.0, 0.0", "T_tcp_mount"),
         (jaw, "[-1.0, 0.0, 0.0, 0.0]", "[-2.0, 0.0, 0.0, 0.0]", "T_tcp_mount"),
         (jaw, "clearance = 0.005", "", "clearance"),
+        (jaw, "clearance = 0.005", "clearance = 5.0", "clearance"),
         (jaw, "kind = \"parallel\"", "kind = \"magnet\"", "kind"),
         (jaw, "approach_axis = \"+z\"", "approach_axis = \"-z\"", "approach_axis"),
         (jaw, "closing_axis = \"+x\"", "closing_axis = \"+y\"", "closing_axis"),
