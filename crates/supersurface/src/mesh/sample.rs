@@ -99,8 +99,8 @@ impl<'a, S: Parametric + Implicit + Sync + ?Sized> SurfaceSampler<'a, S> {
             }
             let slope = self.surface.gradient(&p);
             p -= slope * (off / slope.norm_squared());
-            // also when a number is not finite
-            if !((p - start).norm() <= far) {
+            let moved = (p - start).norm();
+            if moved.is_nan() || moved > far {
                 break;
             }
         }

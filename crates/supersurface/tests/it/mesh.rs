@@ -6,8 +6,8 @@ use supersurface::measure::ClosestFinder;
 use supersurface::mesh::{Mesh, tessellate};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{
-    ExtendedSuperellipsoid, Implicit, Parametric, SeparableSuperquadric, Superellipsoid,
-    Superformula, Supershape, Supertoroid,
+    ExtendedSuperellipsoid, Implicit, Parametric, SeparableSuperquadric, Supercone, Supercylinder,
+    Superellipsoid, Superformula, Supershape, Supertoroid,
 };
 use supersurface::{Point, Vector};
 
@@ -123,6 +123,16 @@ fn separable_superquadrics_and_supershapes() {
         let shape = Supershape::new(longitude, round).unwrap();
         let expected = Expected::new(shape.volume(), 2);
         check(&shape, &expected, &format!("{shape:?}"), |_| None);
+    }
+}
+
+#[test]
+fn cylinders_and_cones() {
+    for (i, e) in [0.1, 0.5, 1.0, 1.9, 2.5].into_iter().enumerate() {
+        let tin = Supercylinder::new(AXES[i % 4], e).unwrap();
+        check(&tin, &Expected::new(tin.volume(), 2), &format!("{tin:?}"), |_| None);
+        let cone = Supercone::new(AXES[(i + 1) % 4], e).unwrap();
+        check(&cone, &Expected::new(cone.volume(), 2), &format!("{cone:?}"), |_| None);
     }
 }
 
