@@ -1,6 +1,7 @@
 //! Integration tests of the library, one binary.
 
 mod closest;
+mod conformance;
 mod floors;
 mod golden_antipodal;
 mod golden_deform;

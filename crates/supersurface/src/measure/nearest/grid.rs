@@ -6,8 +6,8 @@
 use std::fmt;
 
 use super::simplex::lowest;
-use crate::shape::Parametric;
 use crate::Point;
+use crate::shape::Parametric;
 
 /// Nodes along each angle less one.
 const GAPS: usize = 40;
