@@ -40,7 +40,8 @@ pub fn norm(u: f64, v: f64, p: f64) -> f64 {
 #[inline]
 pub fn weighted(u: f64, v: f64, p: f64) -> Weighted {
     let (large, small) = if u >= v { (u, v) } else { (v, u) };
-    if large == 0.0 {
+    // both: beside a NaN neither is the larger
+    if large == 0.0 && small == 0.0 {
         return Weighted { norm: 0.0, first: 0.5, second: 0.5 };
     }
     if large == f64::INFINITY {

@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::shape::{
     Implicit, InvalidShape, Mass, MassProperties, Parametric, SecondOrder, SupportMap,
+    finite_or_zero,
 };
 use crate::{Direction, Point, Pose, Vector};
 
@@ -51,11 +52,13 @@ impl<S> Posed<S> {
 
 impl<S: Implicit> Implicit for Posed<S> {
     fn gauge(&self, p: &Point) -> f64 {
-        self.shape.gauge(&self.to_local(p))
+        let gauge = self.shape.gauge(&self.to_local(p));
+        // a turn of 1e308 overflows either way: far outside
+        if gauge.is_nan() { f64::INFINITY } else { gauge }
     }
 
     fn gradient(&self, p: &Point) -> Vector {
-        self.pose.rotation * self.shape.gradient(&self.to_local(p))
+        finite_or_zero(self.pose.rotation * self.shape.gradient(&self.to_local(p)))
     }
 
     fn bounds(&self) -> [Point; 2] {
@@ -71,7 +74,10 @@ impl<S: Implicit> Implicit for Posed<S> {
 
     fn extent(&self, n: &Vector) -> f64 {
         let local = self.pose.rotation.inverse_transform_vector(n);
-        n.dot(&self.pose.translation.vector) + self.shape.extent(&local)
+        let extent = n.dot(&self.pose.translation.vector) + self.shape.extent(&local);
+        // directions of 1e308 may overflow either way
+        let finite = local.iter().all(|v| v.is_finite()) && !extent.is_nan();
+        if finite { extent } else { f64::INFINITY }
     }
 
     fn is_convex(&self) -> bool {

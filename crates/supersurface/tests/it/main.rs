@@ -2,6 +2,7 @@
 
 mod assembly;
 mod closest;
+mod conformance;
 mod floors;
 mod golden_antipodal;
 mod golden_deform;

@@ -39,16 +39,17 @@ pub(super) fn hits(shape: &impl Implicit, p: &Point, reach: Option<f64>) -> Vec<
     Vec::new()
 }
 
-/// The 26 neighbours of a cell of a grid, and both ways along the gradient.
+/// The 26 neighbours of a cell of a grid, as many places of the bounding box, and both ways along the gradient.
 fn directions(shape: &impl Implicit, p: &Point) -> Vec<Direction> {
     let side = |k: i32| f64::from(k % 3 - 1);
     let neighbours = (0..27).map(|k| Vector::new(side(k), side(k / 3), side(k / 9)));
     let gradient = shape.gradient(p);
     let scaled = gradient / gradient.amax();
     let [low, high] = shape.bounds();
-    // a thin body is met along its own middle
-    let inwards = nalgebra::center(&low, &high) - p;
-    let all = neighbours.chain([scaled, -scaled, inwards]);
+    // a thin body is met along its own middle, and halfway between it and the box
+    let (middle, half) = (nalgebra::center(&low, &high), (high - low) * 0.25);
+    let inwards = neighbours.clone().map(|v| middle + v.component_mul(&half) - p);
+    let all = neighbours.chain(inwards).chain([scaled, -scaled]);
     all.filter(|v| v.iter().all(|c| c.is_finite()))
         .filter_map(|v| Direction::try_new(v, 1e-300))
         .collect()
