@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::Args;
 use serde_json::{Value, json};
 use supersurface::nalgebra::Matrix3;
-use supersurface::shape::{Implicit, Mass, MassProperties};
+use supersurface::shape::{Implicit, Mass, MassEstimate, MassProperties};
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::Model;
 
@@ -41,7 +41,7 @@ struct Facts {
 /// Mass properties and how they came about.
 struct Weighed {
     mass: Mass,
-    /// Estimated relative error of the volume.
+    /// Estimated relative error.
     error: f64,
     how: &'static str,
 }
@@ -58,16 +58,18 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
     let mut notes = Vec::new();
-    let (kind, bounds, convex, exact) = match model {
+    let (kind, bounds, convex, own) = match model {
         Model::Solid(solid) => {
-            let exact = solid.shape().as_mass_properties();
-            let exact = exact.map(|m| m.mass_properties(density).moved(solid.pose()));
-            (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), exact)
+            let mass = Some(weighed(solid.mass_estimate(density)));
+            (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), mass)
         }
         Model::Implicit(kind, solid) => {
             ((*kind).to_owned(), Some(solid.bounds()), Some(solid.is_convex()), None)
         }
-        Model::Extended(_) => ("extended superellipsoid".into(), None, None, None),
+        Model::Extended(solid) => {
+            let mass = Some(weighed(solid.mass_estimate(density)));
+            ("extended superellipsoid".into(), None, None, mass)
+        }
         Model::Combined(solid) => {
             notes.push(("solids", solid.leaves().to_string()));
             ("combination".into(), Some(solid.bounds()), Some(solid.is_convex()), None)
@@ -87,8 +89,8 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         }
     };
     let bounded = bounds.is_none_or(|b| b.iter().all(|p| p.iter().all(|v| v.is_finite())));
-    let mass = match (exact, model) {
-        (Some(mass), _) => Some(Weighed { mass, error: 0.0, how: "closed form" }),
+    let mass = match (own, model) {
+        (Some(mass), _) => Some(mass),
         (None, Model::Assembly(assembly)) => {
             let mut sum: Option<Weighed> = None;
             let poses = assembly.poses(&assembly.rest_rotations());
@@ -101,8 +103,7 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         }
         (None, Model::Quadric(quadric)) => match quadric.as_ellipsoid() {
             Some(e) => {
-                let mass = e.shape().mass_properties(density).moved(e.pose());
-                Some(Weighed { mass, error: 0.0, how: "closed form" })
+                Some(weighed(e.mass_estimate(density)))
             }
             None => None,
         },
@@ -110,6 +111,12 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         (None, _) => None,
     };
     Ok(Facts { name: kind, bounds, convex, mass, notes })
+}
+
+/// From the library's own answer.
+fn weighed(found: MassEstimate) -> Weighed {
+    let MassEstimate { mass, error } = found;
+    Weighed { mass, error, how: if error == 0.0 { "closed form" } else { "by integration" } }
 }
 
 /// Two weighed parts as one; the second stands at a pose.
@@ -121,7 +128,7 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
         Some(sum) => Weighed {
             mass: sum.mass.joined(&moved),
             error: sum.error.max(part.error),
-            how: if sum.how == part.how { part.how } else { "partly of a mesh" },
+            how: if sum.how == part.how { part.how } else { "partly by integration" },
         },
     })
 }

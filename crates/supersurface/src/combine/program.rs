@@ -4,6 +4,8 @@
 //! 1970). A tree of n leaves then needs at most `1 + log2 n` values at a time, so that a fixed array will do for any
 //! tree and nothing recurses.
 
+use std::sync::Arc;
+
 use super::rfunction::{self, Alpha, Blend};
 use crate::Point;
 use crate::shape::Implicit;
@@ -11,8 +13,9 @@ use crate::shape::Implicit;
 /// Values that a program may hold at a time: enough for 2^63 leaves.
 const STACK: usize = 64;
 
-pub(super) type Leaf = Box<dyn Implicit + Send + Sync>;
+pub(super) type Leaf = Arc<dyn Implicit + Send + Sync>;
 
+#[derive(Clone)]
 pub(super) enum Step {
     Leaf(Leaf),
     Complement,
@@ -64,6 +67,7 @@ impl Join {
 }
 
 /// The steps of a tree, and how many values they hold at a time.
+#[derive(Clone)]
 pub(super) struct Program {
     steps: Vec<Step>,
     need: usize,

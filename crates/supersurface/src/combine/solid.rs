@@ -7,6 +7,7 @@
 //! The tree is a [`Program`], so that neither depth nor width costs anything but time.
 
 use std::fmt;
+use std::sync::Arc;
 
 use super::bounds;
 use super::program::{Join, Kind, Program, Step, leaf_value};
@@ -14,7 +15,7 @@ use super::rfunction::{Alpha, Blend};
 use crate::shape::Implicit;
 use crate::{Point, Vector};
 
-/// A Boolean combination of solids, itself a solid.
+/// A Boolean combination of solids, itself a solid; a copy shares them.
 ///
 /// ```
 /// use supersurface::{Point, combine::{Alpha, CombinedSolid}};
@@ -27,6 +28,7 @@ use crate::{Point, Vector};
 /// assert!(bead.contains(&Point::new(0.03, 0.0, 0.0)));
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
+#[derive(Clone)]
 pub struct CombinedSolid {
     program: Program,
 }
@@ -34,7 +36,7 @@ pub struct CombinedSolid {
 impl CombinedSolid {
     /// One solid alone.
     pub fn new(shape: impl Implicit + Send + Sync + 'static) -> Self {
-        Self { program: Program::leaf(Box::new(shape)) }
+        Self { program: Program::leaf(Arc::new(shape)) }
     }
 
     /// What is in either.

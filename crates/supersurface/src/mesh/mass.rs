@@ -3,35 +3,28 @@
 //! For a tetrahedron with the corners 0, a, b, c: `V = a·(b × c)/6`, first moment `V s/4` and second moment
 //! `V (aaᵀ + bbᵀ + ccᵀ + ssᵀ)/20` with `s = a + b + c`.
 
-use nalgebra::Matrix3;
-
 use super::Mesh;
-use crate::shape::{Mass, MassProperties};
-use crate::{Point, Vector};
+use crate::shape::{Mass, MassProperties, Moments};
 
 impl MassProperties for Mesh {
     /// Of the polyhedron itself: exact for the mesh, near those of the surface that it was made of. They mean something
     /// where the mesh is watertight; a mesh without volume has its centre of mass at the origin.
     fn mass_properties(&self, density: f64) -> Mass {
-        let nothing = Mass { mass: 0.0, centre: Point::origin(), inertia: Matrix3::zeros() };
         // near the mesh, so that little cancels
-        let Some(origin) = self.vertices().first() else { return nothing };
-        let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix3::zeros());
+        let Some(origin) = self.vertices().first() else { return Moments::nothing().mass(density) };
+        let mut sum = Moments::nothing();
         for corners in self.corners() {
             let [a, b, c] = corners.map(|p| p - origin);
             let (part, s) = (a.dot(&b.cross(&c)) / 6.0, a + b + c);
-            volume += part;
-            first += s * (part / 4.0);
+            sum.volume += part;
+            sum.first += s * (part / 4.0);
             let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
-            second += (squares + s * s.transpose()) * (part / 20.0);
+            sum.second += (squares + s * s.transpose()) * (part / 20.0);
         }
-        if volume == 0.0 || !volume.is_finite() {
-            return nothing;
+        if sum.volume == 0.0 || !sum.volume.is_finite() {
+            return Moments::nothing().mass(density);
         }
-        let middle = first / volume;
-        let central = second - middle * middle.transpose() * volume;
-        let inertia = Matrix3::identity() * central.trace() - central;
-        Mass { mass: density * volume, centre: origin + middle, inertia: inertia * density }
+        sum.mass(density).moved(&origin.coords.into())
     }
 }
 

@@ -4,8 +4,8 @@
 
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use crate::shape::{
-    Implicit, InvalidShape, MassProperties, Parametric, SecondOrder, SeparableSuperquadric,
-    Superellipsoid, Supershape, Supertoroid, SupportMap,
+    Filled, Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, SecondOrder,
+    SeparableSuperquadric, Superellipsoid, Supershape, Supertoroid, SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -64,6 +64,27 @@ impl From<Surface> for Solid {
     }
 }
 
+/// What every variant answers, as one object.
+macro_rules! views {
+    ($($name:ident: $answer:ident,)+) => {
+        $(
+            fn $name(&self) -> &dyn $answer {
+                match self {
+                    Self::Superellipsoid(s) => s,
+                    Self::Supertoroid(s) => s,
+                    Self::Separable(s) => s,
+                    Self::Supershape(s) => &**s,
+                    Self::Tapered(s) => &**s,
+                    Self::Twisted(s) => &**s,
+                    Self::Bent(s) => &**s,
+                    Self::ShearBent(s) => &**s,
+                    Self::Hollowed(s) => &**s,
+                }
+            }
+        )+
+    };
+}
+
 impl Solid {
     /// What it is, in words: the member of the family and what was done to it, in order.
     pub fn name(&self) -> String {
@@ -118,32 +139,11 @@ impl Solid {
         0.5 * (high.z - low.z)
     }
 
-    fn implicit(&self) -> &dyn Implicit {
-        match self {
-            Self::Superellipsoid(s) => s,
-            Self::Supertoroid(s) => s,
-            Self::Separable(s) => s,
-            Self::Supershape(s) => &**s,
-            Self::Tapered(s) => &**s,
-            Self::Twisted(s) => &**s,
-            Self::Bent(s) => &**s,
-            Self::ShearBent(s) => &**s,
-            Self::Hollowed(s) => &**s,
-        }
-    }
-
-    fn parametric(&self) -> &dyn Parametric {
-        match self {
-            Self::Superellipsoid(s) => s,
-            Self::Supertoroid(s) => s,
-            Self::Separable(s) => s,
-            Self::Supershape(s) => &**s,
-            Self::Tapered(s) => &**s,
-            Self::Twisted(s) => &**s,
-            Self::Bent(s) => &**s,
-            Self::ShearBent(s) => &**s,
-            Self::Hollowed(s) => &**s,
-        }
+    views! {
+        implicit: Implicit,
+        parametric: Parametric,
+        filled: Filled,
+        weighed: MassProperties,
     }
 
     /// Its support points, where they have a closed form.
@@ -156,17 +156,6 @@ impl Solid {
         }
     }
 
-    /// Its mass properties, where they have a closed form or a quadrature of their own.
-    pub fn as_mass_properties(&self) -> Option<&dyn MassProperties> {
-        match self {
-            Self::Superellipsoid(s) => Some(s),
-            Self::Supertoroid(s) => Some(s),
-            Self::Separable(s) => Some(s),
-            Self::Supershape(s) => Some(&**s),
-            _ => None,
-        }
-    }
-
     /// Its second derivatives, where there are formulas for them.
     pub fn as_second_order(&self) -> Option<&dyn SecondOrder> {
         match self {
@@ -175,6 +164,27 @@ impl Solid {
             Self::Separable(s) => Some(s),
             _ => None,
         }
+    }
+}
+
+impl Filled for Solid {
+    fn pieces(&self) -> usize {
+        self.filled().pieces()
+    }
+
+    fn along(&self, piece: usize, at: [f64; 2], shares: &[f64], each: &mut dyn FnMut(Point, f64)) {
+        self.filled().along(piece, at, shares, each);
+    }
+}
+
+/// In closed form for the members, except the supershape; by integration for what is deformed.
+impl MassProperties for Solid {
+    fn mass_properties(&self, density: f64) -> Mass {
+        self.weighed().mass_properties(density)
+    }
+
+    fn mass_estimate(&self, density: f64) -> MassEstimate {
+        self.weighed().mass_estimate(density)
     }
 }
 

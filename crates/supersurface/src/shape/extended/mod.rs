@@ -10,6 +10,7 @@
 //!   tangents and normals, but no explicit gauge.
 //! * [`RadialExtended`]: the exponents follow the *geometric* angles of a point. Its gauge is explicit and exact.
 
+mod mass;
 mod radial;
 
 pub use radial::RadialExtended;
