@@ -162,6 +162,7 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supershape(s) => Some(&**s),
             _ => None,
         }
     }

@@ -78,14 +78,8 @@ impl RadialExtended {
 }
 
 /// `η_g` and `ω_g` of a scaled point.
-fn angles(scaled: &Vector) -> (f64, f64) {
+pub(super) fn angles(scaled: &Vector) -> (f64, f64) {
     (scaled.z.atan2(scaled.x.hypot(scaled.y)), scaled.y.atan2(scaled.x))
-}
-
-/// `-w ln w - (1-w) ln (1-w)` of both weights.
-fn entropy(pair: &Weighted) -> f64 {
-    let part = |w: f64| if w > 0.0 { -w * w.ln() } else { 0.0 };
-    part(pair.first) + part(pair.second)
 }
 
 impl Implicit for RadialExtended {
@@ -113,8 +107,8 @@ impl Implicit for RadialExtended {
         );
         let radius = s.x.hypot(s.y);
         if radius > 0.0 {
-            let along = 0.5 * entropy(&whole) * df1;
-            let around = 0.5 * whole.first * entropy(&planar) * df2;
+            let along = 0.5 * whole.entropy() * df1;
+            let around = 0.5 * whole.first * planar.entropy() * df2;
             let (c, o) = (s.x / radius, s.y / radius);
             let whole_radius = radius.hypot(s.z);
             let (sine, cosine) = (s.z / whole_radius, radius / whole_radius);

@@ -5,7 +5,9 @@
 //! when the normals span space and convex when all exponents are at least 1.
 
 mod form;
+mod hessian;
 mod interior;
+mod mass;
 mod reach;
 
 pub use form::HyperquadricForm;

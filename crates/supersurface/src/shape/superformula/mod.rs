@@ -5,6 +5,7 @@
 //! of semi-axes `a`, `b`.
 
 mod extent;
+mod hessian;
 mod mass;
 mod supershape;
 
@@ -110,6 +111,34 @@ impl Superformula {
         };
         let turn = over(second, terms.cos, terms.sin) * n3 - over(first, terms.sin, terms.cos) * n2;
         Some(-0.25 * self.m / n1 * turn)
+    }
+
+    /// The derivative of [`Self::log_slope`], `-(1/n1) A' (m/4)²` with `A' = w_s w_c (n3 cot ψ + n2 tan ψ)² -
+    /// w_s n3/sin² ψ - w_c n2/cos² ψ`; `None` where it does not exist.
+    pub(crate) fn log_bend(&self, phi: f64) -> Option<f64> {
+        if self.m == 0.0 {
+            return Some(0.0);
+        }
+        let terms = self.terms(phi);
+        let ([n1, n2, n3], [a, b]) = (self.n, self.scales);
+        // where one term vanishes: its share over the square of the sine or cosine
+        let vanishing = |n: f64, scale: f64, other: f64| match n {
+            _ if n > 2.0 => Some(0.0),
+            _ if n == 2.0 => Some(2.0 * (-2.0 * scale.ln() - other).exp()),
+            _ => None,
+        };
+        let bend = if terms.sin == 0.0 {
+            vanishing(n3, b, terms.log_first)? - n2
+        } else if terms.cos == 0.0 {
+            vanishing(n2, a, terms.log_second)? - n3
+        } else {
+            let [first, second] = terms.shares();
+            let (cot, tan) = (terms.cos / terms.sin, terms.sin / terms.cos);
+            // roots first: a share may vanish where the square overflows
+            let both = (first * second).sqrt() * (n3 * cot + n2 * tan);
+            both * both - second * n3 / terms.sin / terms.sin - first * n2 / terms.cos / terms.cos
+        };
+        Some(-bend / n1 * (0.0625 * self.m * self.m))
     }
 
     fn terms(&self, phi: f64) -> Terms {
