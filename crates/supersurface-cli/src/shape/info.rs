@@ -101,12 +101,9 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
             }
             sum
         }
-        (None, Model::Quadric(quadric)) => match quadric.as_ellipsoid() {
-            Some(e) => {
-                Some(weighed(e.mass_estimate(density)))
-            }
-            None => None,
-        },
+        (None, Model::Quadric(quadric)) => {
+            quadric.as_ellipsoid().map(|e| weighed(e.mass_estimate(density)))
+        }
         (None, _) if bounded => Some(of_meshes(name, model, density)?),
         (None, _) => None,
     };

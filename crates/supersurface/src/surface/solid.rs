@@ -4,8 +4,8 @@
 
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use crate::shape::{
-    Filled, Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, SecondOrder,
-    SeparableSuperquadric, Superellipsoid, Supershape, Supertoroid, SupportMap,
+    Filled, Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, RadialExtended,
+    SecondOrder, SeparableSuperquadric, Superellipsoid, Supershape, Supertoroid, SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -31,6 +31,8 @@ pub enum Solid {
     Separable(SeparableSuperquadric),
     /// The product of two superformulas.
     Supershape(Box<Supershape>),
+    /// Exponents that follow the angles of the point.
+    RadialExtended(Box<RadialExtended>),
     /// Sections across z grow or shrink.
     Tapered(Box<Deformed<Self, Taper>>),
     /// Sections across z turn.
@@ -74,6 +76,7 @@ macro_rules! views {
                     Self::Supertoroid(s) => s,
                     Self::Separable(s) => s,
                     Self::Supershape(s) => &**s,
+                    Self::RadialExtended(s) => &**s,
                     Self::Tapered(s) => &**s,
                     Self::Twisted(s) => &**s,
                     Self::Bent(s) => &**s,
@@ -94,6 +97,7 @@ impl Solid {
             Self::Supertoroid(_) => "supertoroid".into(),
             Self::Separable(_) => "separable superquadric".into(),
             Self::Supershape(_) => "supershape".into(),
+            Self::RadialExtended(_) => "radial extended superellipsoid".into(),
             Self::Tapered(s) => deformed(s.shape(), "tapered"),
             Self::Twisted(s) => deformed(s.shape(), "twisted"),
             Self::Bent(s) => deformed(s.shape(), "bent"),
@@ -163,6 +167,7 @@ impl Solid {
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
             Self::Supershape(s) => Some(&**s),
+            Self::RadialExtended(s) => Some(&**s),
             _ => None,
         }
     }
@@ -178,7 +183,7 @@ impl Filled for Solid {
     }
 }
 
-/// In closed form for the members, except the supershape; by integration for what is deformed.
+/// In closed form for the first three members, by integration for the others and for what is deformed.
 impl MassProperties for Solid {
     fn mass_properties(&self, density: f64) -> Mass {
         self.weighed().mass_properties(density)

@@ -57,7 +57,7 @@ mod lines {
     conforms!(supershape: supershape => gradient hessian on_surface parametric curvature bounds mass ray nearest point_extremes hessian_extremes surface_extremes);
     conforms!(hyperquadric: hyperquadric => gradient hessian bounds mass ray nearest_solid point_extremes hessian_extremes);
     conforms!(extended: extended => parametric surface_extremes);
-    conforms!(extended_radial: extended_radial => gradient hessian on_surface parametric curvature bounds touched mass ray nearest nearest_solid point_extremes hessian_extremes surface_extremes);
+    conforms!(extended_radial: extended_radial => gradient hessian on_surface parametric curvature bounds touched mass ray nearest_solid point_extremes hessian_extremes surface_extremes);
     conforms!(tapered: tapered => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
     conforms!(twisted: twisted => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
     conforms!(bent: bent => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
