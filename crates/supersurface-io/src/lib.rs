@@ -6,6 +6,8 @@
 //! | camera intrinsics (JSON) | in | [`read_camera`] |
 //! | instance mask (PNG) | in | [`read_mask`] |
 //! | gripper (TOML) | in | [`read_gripper`] |
+//! | shape (JSON) | in | [`read_shape`] |
+//! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
 //! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
 //!
@@ -23,6 +25,7 @@
 
 mod bytes;
 mod camera_json;
+mod cloud_files;
 mod depth_png;
 mod error;
 mod grasps_json;
@@ -33,10 +36,12 @@ mod pcd;
 mod ply;
 mod read;
 mod report_json;
+mod shape_json;
 mod text;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
+pub use cloud_files::write_points;
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;
@@ -45,4 +50,5 @@ pub use mesh_files::write_mesh;
 pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
+pub use shape_json::{Model, parse_shape, read_shape};
 pub use write::write_png;

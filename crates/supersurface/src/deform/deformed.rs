@@ -98,7 +98,8 @@ impl<S: Parametric, D: Deformation> Parametric for Deformed<S, D> {
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
         let jacobian = self.deformation.jacobian(&self.shape.point(eta, omega));
-        Some(self.shape.tangents(eta, omega)?.map(|t| jacobian * t))
+        let tangents = self.shape.tangents(eta, omega)?.map(|t| jacobian * t);
+        tangents.iter().flat_map(Vector::iter).all(|v| v.is_finite()).then_some(tangents)
     }
 
     fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {

@@ -23,6 +23,7 @@ mod chords;
 mod equal_arc;
 mod equal_arc_grid;
 mod march;
+mod mass;
 mod sample;
 mod tessellate;
 mod triangles;

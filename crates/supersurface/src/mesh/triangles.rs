@@ -7,7 +7,7 @@ use std::borrow::Borrow;
 use std::collections::HashMap;
 
 use crate::shape::InvalidShape;
-use crate::{Direction, Point, Vector};
+use crate::{Direction, Point, Pose, Vector};
 
 /// Vertices in metres and triangles as indices of three vertices, counter-clockwise seen from outside.
 ///
@@ -66,6 +66,23 @@ impl Mesh {
             std::mem::swap(b, c);
         }
         self
+    }
+
+    /// The same mesh moved by a motion.
+    pub fn moved(mut self, motion: &Pose) -> Self {
+        for v in &mut self.vertices {
+            *v = motion * *v;
+        }
+        self
+    }
+
+    /// Both meshes as one; they share no vertex. `None` when together they have more than 2^32 vertices.
+    pub fn beside(mut self, other: &Self) -> Option<Self> {
+        let shift = u32::try_from(self.vertices.len()).ok()?;
+        u32::try_from(self.vertices.len() + other.vertices.len()).ok()?;
+        self.vertices.extend_from_slice(&other.vertices);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + shift)));
+        Some(self)
     }
 
     /// Corners of each triangle, in metres.

@@ -67,6 +67,12 @@ pub fn quadrant_cos_sin(angle: f64) -> (f64, f64) {
     (snap(c), snap(s))
 }
 
+/// The larger of both; NaN where one is (`f64::max` would pass over it).
+#[inline]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// Beta function `B(x, y)` for positive arguments, by the logarithm of the gamma function.
 pub fn beta(x: f64, y: f64) -> f64 {
     (libm::lgamma(x) + libm::lgamma(y) - libm::lgamma(x + y)).exp()

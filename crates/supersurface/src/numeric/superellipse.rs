@@ -15,6 +15,14 @@ pub struct Weighted {
     pub second: f64,
 }
 
+impl Weighted {
+    /// Binary entropy of the weights, `-w ln w - (1 - w) ln (1 - w)`, in [0, ln 2].
+    pub fn entropy(&self) -> f64 {
+        let part = |w: f64| if w > 0.0 { -w * w.ln() } else { 0.0 };
+        part(self.first) + part(self.second)
+    }
+}
+
 /// `(u^p + v^p)^(1/p)` for non-negative `u`, `v` and `p > 0`.
 ///
 /// ```
@@ -32,7 +40,8 @@ pub fn norm(u: f64, v: f64, p: f64) -> f64 {
 #[inline]
 pub fn weighted(u: f64, v: f64, p: f64) -> Weighted {
     let (large, small) = if u >= v { (u, v) } else { (v, u) };
-    if large == 0.0 {
+    // both: beside a NaN neither is the larger
+    if large == 0.0 && small == 0.0 {
         return Weighted { norm: 0.0, first: 0.5, second: 0.5 };
     }
     if large == f64::INFINITY {

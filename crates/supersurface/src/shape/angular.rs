@@ -29,8 +29,8 @@ pub(super) fn normal_power(b: f64, e: f64) -> Option<f64> {
 /// The unit vector along `n`; `None` for a vector that has no direction or overflows.
 pub(super) fn unit(n: Vector) -> Option<Direction> {
     // scaled first, so that the squares do not overflow
-    let largest = n.amax();
-    (largest > 0.0 && largest.is_finite()).then(|| Direction::new_normalize(n / largest))
+    let (largest, finite) = (n.amax(), n.iter().all(|v| v.is_finite()));
+    (largest > 0.0 && finite).then(|| Direction::new_normalize(n / largest))
 }
 
 /// Both tangents, where all their components are finite.

@@ -42,5 +42,5 @@ pub use superformula::{Superformula, Supershape};
 pub use superhyperboloid::{Sheet, SuperhyperboloidOneSheet, SuperhyperboloidTwoSheets};
 pub use superparaboloid::Superparaboloid;
 pub use supertoroid::Supertoroid;
-pub(crate) use traits::box_extent;
 pub use traits::{Implicit, MassProperties, Parametric, SecondOrder, SupportMap};
+pub(crate) use traits::{box_extent, finite_or_zero};

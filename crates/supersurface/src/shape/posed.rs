@@ -1,7 +1,12 @@
 //! A shape with a pose.
 
-use crate::shape::{Implicit, InvalidShape, SupportMap};
-use crate::{Point, Pose, Vector};
+use nalgebra::Matrix3;
+
+use crate::shape::{
+    Implicit, InvalidShape, Mass, MassProperties, Parametric, SecondOrder, SupportMap,
+    finite_or_zero,
+};
+use crate::{Direction, Point, Pose, Vector};
 
 /// A shape whose own frame stands at `pose` in the world: `p_world = pose * p_local`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,11 +52,13 @@ impl<S> Posed<S> {
 
 impl<S: Implicit> Implicit for Posed<S> {
     fn gauge(&self, p: &Point) -> f64 {
-        self.shape.gauge(&self.to_local(p))
+        let gauge = self.shape.gauge(&self.to_local(p));
+        // a turn of 1e308 overflows either way: far outside
+        if gauge.is_nan() { f64::INFINITY } else { gauge }
     }
 
     fn gradient(&self, p: &Point) -> Vector {
-        self.pose.rotation * self.shape.gradient(&self.to_local(p))
+        finite_or_zero(self.pose.rotation * self.shape.gradient(&self.to_local(p)))
     }
 
     fn bounds(&self) -> [Point; 2] {
@@ -67,11 +74,46 @@ impl<S: Implicit> Implicit for Posed<S> {
 
     fn extent(&self, n: &Vector) -> f64 {
         let local = self.pose.rotation.inverse_transform_vector(n);
-        n.dot(&self.pose.translation.vector) + self.shape.extent(&local)
+        let extent = n.dot(&self.pose.translation.vector) + self.shape.extent(&local);
+        // directions of 1e308 may overflow either way
+        let finite = local.iter().all(|v| v.is_finite()) && !extent.is_nan();
+        if finite { extent } else { f64::INFINITY }
     }
 
     fn is_convex(&self) -> bool {
         self.shape.is_convex()
+    }
+}
+
+impl<S: SecondOrder> SecondOrder for Posed<S> {
+    /// `R H Rᵀ`.
+    fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
+        let turn = self.pose.rotation.to_rotation_matrix().into_inner();
+        Some(turn * self.shape.hessian(&self.to_local(p))? * turn.transpose())
+    }
+}
+
+impl<S: Parametric> Parametric for Posed<S> {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        self.shape.domain()
+    }
+
+    fn point(&self, eta: f64, omega: f64) -> Point {
+        self.pose * self.shape.point(eta, omega)
+    }
+
+    fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
+        Some(self.shape.tangents(eta, omega)?.map(|t| self.pose.rotation * t))
+    }
+
+    fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
+        Some(self.pose.rotation * self.shape.normal(eta, omega)?)
+    }
+}
+
+impl<S: MassProperties> MassProperties for Posed<S> {
+    fn mass_properties(&self, density: f64) -> Mass {
+        self.shape.mass_properties(density).moved(&self.pose)
     }
 }
 

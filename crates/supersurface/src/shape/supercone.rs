@@ -6,6 +6,7 @@
 use nalgebra::Matrix3;
 
 use super::supercylinder::{base_moments, rim_support};
+use crate::numeric::powers::larger;
 use crate::numeric::superellipse::norm;
 use crate::shape::jet::Jet;
 use crate::shape::superellipsoid::{check_axes, check_exponents};
@@ -78,7 +79,7 @@ impl Implicit for Supercone {
     /// `max(2 ρ̂ + z/a3, -z/a3)`: the gauge about the middle of the height, 1 on mantle and base.
     fn gauge(&self, p: &Point) -> f64 {
         let (radius, height) = (2.0 * self.radius(p), p.z / self.semi_axes[2]);
-        if radius == f64::INFINITY { radius } else { (radius + height).max(-height) }
+        if radius == f64::INFINITY { radius } else { larger(radius + height, -height) }
     }
 
     fn gradient(&self, p: &Point) -> Vector {

@@ -5,6 +5,7 @@
 use nalgebra::Matrix3;
 
 use crate::numeric::dirichlet::dirichlet;
+use crate::numeric::powers::larger;
 use crate::numeric::superellipse::norm;
 use crate::shape::jet::Jet;
 use crate::shape::superellipsoid::{Superellipsoid, check_axes, check_exponents};
@@ -80,7 +81,7 @@ pub(super) fn rim_support([a1, a2, _]: [f64; 3], exponent: f64, n: &Vector) -> P
 
 impl Implicit for Supercylinder {
     fn gauge(&self, p: &Point) -> f64 {
-        self.radius(p).max((p.z / self.semi_axes[2]).abs())
+        larger(self.radius(p), (p.z / self.semi_axes[2]).abs())
     }
 
     fn gradient(&self, p: &Point) -> Vector {

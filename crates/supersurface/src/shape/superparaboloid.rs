@@ -112,7 +112,7 @@ impl Parametric for Superparaboloid {
         let [a1, a2, a3] = self.semi_axes;
         let [e1, e2] = self.exponents;
         let [x, y] = superellipse(omega, e2);
-        Point::new(a1 * u * x, a2 * u * y, a3 * power(u, 2.0 / e1))
+        Point::new(a1 * x * u, a2 * y * u, a3 * power(u, 2.0 / e1))
     }
 
     fn tangents(&self, u: f64, omega: f64) -> Option<[Vector; 2]> {

@@ -14,7 +14,8 @@ pub trait Implicit {
     /// point is outside of everything that the form can say.
     fn gauge(&self, p: &Point) -> f64;
 
-    /// Gradient of the gauge, in 1/m. Zero where it is not defined (centre, axis of a toroid).
+    /// Gradient of the gauge, in 1/m. Zero where it is not defined (centre, axis of a toroid)
+    /// or overflows.
     fn gradient(&self, p: &Point) -> Vector;
 
     /// Corners of an axis-aligned box (lowest, highest) that contains the solid, in metres; infinite where
@@ -33,9 +34,9 @@ pub trait Implicit {
         false
     }
 
-    /// True inside or on the surface.
+    /// True inside or on the surface; a point that is not finite is not inside.
     fn contains(&self, p: &Point) -> bool {
-        self.gauge(p) <= 1.0
+        self.gauge(p) <= 1.0 && p.iter().all(|v| v.is_finite())
     }
 
     /// First-order (Taubin) signed distance `(g - 1)/|∇g|` in metres, positive outside. Infinite with the
@@ -52,6 +53,12 @@ pub trait Implicit {
     }
 }
 
+/// A gradient; zero where one of its components overflows.
+#[inline]
+pub(crate) fn finite_or_zero(gradient: Vector) -> Vector {
+    if gradient.iter().all(|v| v.is_finite()) { gradient } else { Vector::zeros() }
+}
+
 /// The support function of a box (lowest, highest corner), which may be infinite.
 pub(crate) fn box_extent([low, high]: &[Point; 2], n: &Vector) -> f64 {
     let along = |n: f64, low: f64, high: f64| match n.partial_cmp(&0.0) {
@@ -61,6 +68,28 @@ pub(crate) fn box_extent([low, high]: &[Point; 2], n: &Vector) -> f64 {
         _ => 0.0,
     };
     along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z)
+}
+
+impl<S: Implicit + ?Sized> Implicit for Box<S> {
+    fn gauge(&self, p: &Point) -> f64 {
+        (**self).gauge(p)
+    }
+
+    fn gradient(&self, p: &Point) -> Vector {
+        (**self).gradient(p)
+    }
+
+    fn bounds(&self) -> [Point; 2] {
+        (**self).bounds()
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        (**self).extent(n)
+    }
+
+    fn is_convex(&self) -> bool {
+        (**self).is_convex()
+    }
 }
 
 /// A gauge with second derivatives.

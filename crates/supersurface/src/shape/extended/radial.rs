@@ -91,6 +91,9 @@ fn entropy(pair: &Weighted) -> f64 {
 impl Implicit for RadialExtended {
     /// `g = F^{f1/2} = 1/β`, homogeneous of degree 1.
     fn gauge(&self, p: &Point) -> f64 {
+        if !p.iter().all(|v| v.is_finite()) {
+            return f64::INFINITY;
+        }
         self.layers(p).map_or(0.0, |l| l.size * l.whole.norm)
     }
 

@@ -195,6 +195,9 @@ impl Hyperquadric {
 
 impl Implicit for Hyperquadric {
     fn gauge(&self, p: &Point) -> f64 {
+        if !p.iter().all(|v| v.is_finite()) {
+            return f64::INFINITY;
+        }
         if self.convex {
             return self.radial_gauge(&(p - self.interior)).0;
         }

@@ -2,7 +2,7 @@
 
 use super::Superellipsoid;
 use crate::numeric::superellipse::{norm, weighted};
-use crate::shape::{Implicit, SupportMap};
+use crate::shape::{Implicit, SupportMap, finite_or_zero};
 use crate::{Point, Vector};
 
 impl Implicit for Superellipsoid {
@@ -24,11 +24,11 @@ impl Implicit for Superellipsoid {
         let planar = weighted(u, v, 2.0 / e2);
         let whole = weighted(planar.norm, w, 2.0 / e1);
         let share = |weight: f64, c: f64| if c == 0.0 { 0.0 } else { whole.norm * weight / c };
-        Vector::new(
+        finite_or_zero(Vector::new(
             share(whole.first * planar.first, p.x),
             share(whole.first * planar.second, p.y),
             share(whole.second, p.z),
-        )
+        ))
     }
 
     fn bounds(&self) -> [Point; 2] {

@@ -47,8 +47,8 @@ pub(crate) fn angular_normal(
     let (x, y) = if c == 0.0 { (0.0, 0.0) } else { (smooth(co, e2)?, smooth(so, e2)?) };
     let n = Vector::new(c * x / a1, c * y / a2, s / a3);
     // scaled first: 1/a overflows nothing but the sum of squares of 1e200 would
-    let largest = n.amax();
-    (largest > 0.0 && largest.is_finite()).then(|| Direction::new_normalize(n / largest))
+    let (largest, finite) = (n.amax(), n.iter().all(|v| v.is_finite()));
+    (largest > 0.0 && finite).then(|| Direction::new_normalize(n / largest))
 }
 
 /// Derivatives of `(a1 r cos^ε2 ω, a2 r sin^ε2 ω, a3 sin^ε1 η)` with `r = a4 + cos^ε1 η` (a4 = 0 for a

@@ -17,12 +17,14 @@ impl SupportMap for Superellipsoid {
         let g = dual_norm(u[0], u[1], e2);
         let h = dual_norm(g, u[2], e1);
         if h == 0.0 || !h.is_finite() {
-            return Point::origin();
+            let largest = n.amax();
+            return match h == f64::INFINITY && largest > 1.0 && largest.is_finite() {
+                true => self.support_point(&(n / largest)),
+                false => Point::origin(),
+            };
         }
-        let planar = dual_share(g, h, e1);
-        let (x, y) =
-            if g > 0.0 { (dual_share(u[0], g, e2), dual_share(u[1], g, e2)) } else { (0.0, 0.0) };
-        let z = dual_share(u[2], h, e1);
+        let [planar, z] = dual_shares(g, u[2], h, e1);
+        let [x, y] = if g > 0.0 { dual_shares(u[0], u[1], g, e2) } else { [0.0; 2] };
         Point::new(
             (a1 * x * planar).copysign(n.x),
             (a2 * y * planar).copysign(n.y),
@@ -31,10 +33,10 @@ impl SupportMap for Superellipsoid {
     }
 }
 
-/// `(part/whole)^(ε/(2-ε))`; for ε >= 2 the larger part takes all.
-fn dual_share(part: f64, whole: f64, epsilon: f64) -> f64 {
+/// `(part/whole)^(ε/(2-ε))` of both parts; for ε >= 2 the larger takes all, of equal ones the first.
+fn dual_shares(first: f64, second: f64, whole: f64, epsilon: f64) -> [f64; 2] {
     if epsilon >= 2.0 {
-        return if part >= whole { 1.0 } else { 0.0 };
+        return if first >= second { [1.0, 0.0] } else { [0.0, 1.0] };
     }
-    power(part / whole, epsilon / (2.0 - epsilon))
+    [first, second].map(|part| power(part / whole, epsilon / (2.0 - epsilon)))
 }

@@ -2,7 +2,7 @@
 
 use super::Supertoroid;
 use crate::numeric::superellipse::{norm, weighted};
-use crate::shape::{Implicit, SupportMap};
+use crate::shape::{Implicit, SupportMap, finite_or_zero};
 use crate::{Point, Vector};
 
 impl Implicit for Supertoroid {
@@ -24,11 +24,11 @@ impl Implicit for Supertoroid {
         let whole = weighted(offset.abs(), (p.z / a3).abs(), 2.0 / e1);
         let share = |weight: f64, c: f64| if c == 0.0 { 0.0 } else { weight / c };
         let across = whole.norm * share(whole.first, offset) * planar.norm;
-        Vector::new(
+        finite_or_zero(Vector::new(
             across * share(planar.first, p.x),
             across * share(planar.second, p.y),
             whole.norm * share(whole.second, p.z),
-        )
+        ))
     }
 
     fn bounds(&self) -> [Point; 2] {

@@ -9,7 +9,11 @@ impl SupportMap for Supertoroid {
     /// directions agree, so the sum of both support points is one of the toroid's.
     fn support_point(&self, n: &Vector) -> Point {
         let tube = Superellipsoid::from_checked(self.semi_axes, self.exponents);
-        let ring = tube.support_point(&Vector::new(n.x, n.y, 0.0));
+        let mut ring = tube.support_point(&Vector::new(n.x, n.y, 0.0));
+        if ring == Point::origin() {
+            // along z every direction of the ring serves
+            ring.x = self.semi_axes[0];
+        }
         let p = tube.support_point(n);
         let a4 = self.ring_ratio;
         Point::new(p.x + a4 * ring.x, p.y + a4 * ring.y, p.z)
