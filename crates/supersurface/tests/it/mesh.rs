@@ -1,9 +1,10 @@
 //! Meshes of all closed parametric shapes: closed, outward, within their tolerance of the surface at random points,
 //! with the volume of the solid.
 
+use supersurface::combine::{Alpha, CombinedSolid};
 use supersurface::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use supersurface::measure::ClosestFinder;
-use supersurface::mesh::{Mesh, tessellate};
+use supersurface::mesh::{MarchOptions, Mesh, Resolution, march, tessellate};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{
     ExtendedSuperellipsoid, Implicit, Parametric, SeparableSuperquadric, Supercone, Supercylinder,
@@ -189,6 +190,32 @@ fn bowls() {
         let farthest = if e[0] < 0.2 { 4.0 } else { 1.0 };
         let expected = Expected { farthest, ..Expected::new(fine.volume(), 2) };
         check(&bowl, &expected, &format!("bowl {e:?}"), |_| None);
+    }
+}
+
+#[test]
+fn combined_solids_are_marched() {
+    let ball = Superellipsoid::new([0.05; 3], [1.0; 2]).unwrap();
+    let bar = Superellipsoid::new([0.02, 0.02, 0.1], [0.1; 2]).unwrap();
+    let handle = Supertoroid::new([0.01; 3], 2.5, [0.5, 1.0]).unwrap();
+    let mug = Superellipsoid::new([0.03, 0.03, 0.05], [0.1, 1.0]).unwrap();
+    let inside = Superellipsoid::new([0.026, 0.026, 0.045], [0.1, 1.0]).unwrap();
+    let bead = || CombinedSolid::new(ball).difference(CombinedSolid::new(bar), Alpha::SMOOTH);
+    let chain = bead().union(CombinedSolid::new(handle), Alpha::SMOOTH);
+    let shell = CombinedSolid::new(mug).difference(CombinedSolid::new(inside), Alpha::SMOOTH);
+    for (name, solid, euler) in [("bead", bead(), 0), ("chain", chain, 0), ("shell", shell, 4)] {
+        let [coarse, fine] = [40, 64].map(|n| {
+            let options = MarchOptions { resolution: Resolution::Count(n), ..Default::default() };
+            march(&solid, &options).unwrap()
+        });
+        for mesh in [&coarse, &fine] {
+            assert!(mesh.is_watertight(), "{name}");
+            assert_eq!(mesh.euler_characteristic(), euler, "{name}");
+            let off = mesh.vertices().iter().map(|p| (solid.gauge(p) - 1.0).abs());
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-9, "{name}: {off}");
+        }
+        assert!((coarse.volume() / fine.volume() - 1.0).abs() < 0.01, "{name}");
     }
 }
 
