@@ -61,8 +61,14 @@ fn others() -> Result<Vec<(&'static str, Mesh)>, Failure> {
         let extended = ExtendedSuperellipsoid::new([1.0; 3], &profile, &section)?;
         let (a, e) = ([0.5, 0.5, 0.5], [0.8, 0.8]);
         Ok(vec![
-            ("supercylinder, ε2 = 0.6", marched(Supercylinder::new([1.0; 3], 0.6)?)),
-            ("supercone, ε2 = 1.4", marched(Supercone::new([1.0; 3], 1.4)?)),
+            (
+                "supercylinder, ε2 = 0.6",
+                Member::Solid(Solid::Supercylinder(Supercylinder::new([1.0; 3], 0.6)?)),
+            ),
+            (
+                "supercone, ε2 = 1.4",
+                Member::Solid(Solid::Supercone(Supercone::new([1.0; 3], 1.4)?)),
+            ),
             (
                 "equation 6, k = (2, 4, 10)",
                 Member::Solid(Solid::Separable(SeparableSuperquadric::new(

@@ -107,7 +107,7 @@ pub fn intersection(f1: f64, f2: f64, alpha: Alpha) -> (f64, [f64; 2]) {
         if part > 0.0 {
             (1.0 - a) * (other / root) * (other / (root + part))
         } else {
-            (root - part) / ((1.0 + a) * root)
+            (root - part) / root / (1.0 + a)
         }
     };
     (value, [slope(f1, f2), slope(f2, f1)])

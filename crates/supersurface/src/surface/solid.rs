@@ -5,7 +5,7 @@
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use crate::shape::{
     Implicit, InvalidShape, MassProperties, Parametric, SecondOrder, SeparableSuperquadric,
-    Superellipsoid, Supershape, Supertoroid, SupportMap,
+    Supercone, Supercylinder, Superellipsoid, Supershape, Supertoroid, SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -29,6 +29,10 @@ pub enum Solid {
     Supertoroid(Supertoroid),
     /// Equation 6: an exponent for each axis.
     Separable(SeparableSuperquadric),
+    /// Straight sides on a superelliptic base.
+    Supercylinder(Supercylinder),
+    /// A superelliptic base and an apex.
+    Supercone(Supercone),
     /// The product of two superformulas.
     Supershape(Box<Supershape>),
     /// Sections across z grow or shrink.
@@ -72,6 +76,8 @@ impl Solid {
             Self::Superellipsoid(_) => "superellipsoid".into(),
             Self::Supertoroid(_) => "supertoroid".into(),
             Self::Separable(_) => "separable superquadric".into(),
+            Self::Supercylinder(_) => "supercylinder".into(),
+            Self::Supercone(_) => "supercone".into(),
             Self::Supershape(_) => "supershape".into(),
             Self::Tapered(s) => deformed(s.shape(), "tapered"),
             Self::Twisted(s) => deformed(s.shape(), "twisted"),
@@ -123,6 +129,8 @@ impl Solid {
             Self::Superellipsoid(s) => s,
             Self::Supertoroid(s) => s,
             Self::Separable(s) => s,
+            Self::Supercylinder(s) => s,
+            Self::Supercone(s) => s,
             Self::Supershape(s) => &**s,
             Self::Tapered(s) => &**s,
             Self::Twisted(s) => &**s,
@@ -137,6 +145,8 @@ impl Solid {
             Self::Superellipsoid(s) => s,
             Self::Supertoroid(s) => s,
             Self::Separable(s) => s,
+            Self::Supercylinder(s) => s,
+            Self::Supercone(s) => s,
             Self::Supershape(s) => &**s,
             Self::Tapered(s) => &**s,
             Self::Twisted(s) => &**s,
@@ -152,6 +162,8 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supercylinder(s) => Some(s),
+            Self::Supercone(s) => Some(s),
             _ => None,
         }
     }
@@ -162,6 +174,8 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supercylinder(s) => Some(s),
+            Self::Supercone(s) => Some(s),
             Self::Supershape(s) => Some(&**s),
             _ => None,
         }
@@ -173,6 +187,8 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supercylinder(s) => Some(s),
+            Self::Supercone(s) => Some(s),
             _ => None,
         }
     }
