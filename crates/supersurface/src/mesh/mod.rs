@@ -1,5 +1,13 @@
 //! Floor 6: triangle meshes of surfaces, and points spread evenly on curves and surfaces.
 //!
+//! | for | use | holds |
+//! |---|---|---|
+//! | a closed parametric surface | [`tessellate`] | closed, within a tolerance, fine where it is curved |
+//! | one with a border | [`tessellate_patch`] | within a tolerance |
+//! | any bounded implicit solid | [`march`] | closed, details of a cell are lost |
+//! | random points | [`SurfaceSampler`] | uniform over the area, on the surface |
+//! | grids of points | [`superellipsoid_grid`], [`supertoroid_grid`] | equal angles, or equal arcs along meridians |
+//!
 //! ```
 //! use supersurface::{mesh::tessellate, shape::Superellipsoid};
 //! let tin = Superellipsoid::new([0.033, 0.033, 0.05], [0.1, 1.0])?;

@@ -12,6 +12,8 @@ use super::Mesh;
 use super::angle_grid::Grid;
 use crate::shape::Parametric;
 
+/// Share of the tolerance that the chords of each direction may use.
+const SHARE: f64 = 0.45;
 /// Share of the tolerance that the compared points may use, since the farthest point may lie between them.
 const CHECKED: f64 = 0.9;
 /// Tolerances, as shares of the surface's size, that are not tried.
@@ -55,7 +57,7 @@ pub struct Tessellation {
 
 /// The mesh of a closed surface, no farther than `tolerance` metres from it.
 ///
-/// `None` chooses the tolerance, a five hundredth of volume over area, so that the volume is within 0.1 % of the solid's.
+/// `None` chooses the tolerance so that the volume is within 0.1 % of the solid's: a five hundredth of volume over area, or more where that is enough.
 /// Surfaces are closed when η ends in two poles or where it began, and ω where it began; any other has
 /// [`TessellateError::Open`].
 ///
@@ -74,11 +76,11 @@ pub fn tessellate<S: Parametric + ?Sized>(
     tolerance: Option<f64>,
 ) -> Result<Tessellation, TessellateError> {
     let mut grid = Grid::new(surface).filter(Grid::is_closed).ok_or(TessellateError::Open)?;
-    let tolerance = match tolerance {
-        Some(given) => checked(given)?,
-        None => grid.default_tolerance(),
+    let chords = match tolerance {
+        Some(given) => [SHARE * checked(given)?; 2],
+        None => grid.default_chords(),
     };
-    let mut found = fine_enough(&mut grid, tolerance)?;
+    let mut found = fine_enough(&mut grid, chords)?;
     if found.mesh.volume() < 0.0 {
         found.mesh = found.mesh.flipped();
     }
@@ -102,7 +104,7 @@ pub fn tessellate_patch<S: Parametric + ?Sized>(
     tolerance: f64,
 ) -> Result<Tessellation, TessellateError> {
     let mut grid = Grid::new(surface).ok_or(TessellateError::Open)?;
-    let mut found = fine_enough(&mut grid, checked(tolerance)?)?;
+    let mut found = fine_enough(&mut grid, [SHARE * checked(tolerance)?; 2])?;
     if grid.faces_inwards() {
         found.mesh = found.mesh.flipped();
     }
@@ -116,14 +118,15 @@ fn checked(tolerance: f64) -> Result<f64, TessellateError> {
     }
 }
 
-/// Cuts the grid until its mesh is close enough.
+/// Cuts the grid, first by the distances of chords along both directions, until its mesh is close enough.
 fn fine_enough<S: Parametric + ?Sized>(
     grid: &mut Grid<'_, S>,
-    tolerance: f64,
+    chords: [f64; 2],
 ) -> Result<Tessellation, TessellateError> {
+    let tolerance = (chords[0] + chords[1]) / (2.0 * SHARE);
     let mut best = f64::INFINITY;
     if tolerance > FINEST * grid.size {
-        grid.cut(tolerance);
+        grid.cut(chords);
         // more than a few rounds are needed only where the two directions twist each other
         for _ in 0..ROUNDS {
             if grid.is_too_fine() {
