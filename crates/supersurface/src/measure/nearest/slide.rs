@@ -6,6 +6,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
+use super::simplex::lowest;
 use crate::measure::implicit_curvature::tangents;
 use crate::shape::Implicit;
 use crate::{Direction, Point, Vector};
@@ -76,6 +77,20 @@ impl<S: Implicit> Surface<'_, S> {
             }
         }
         Some(now)
+    }
+
+    /// A point nearer than `start`, which may lie on an edge: places on the plane that faces `p` there, each taken back
+    /// to the surface.
+    pub(super) fn narrow(&self, start: &Point, p: &Point) -> Option<Foot> {
+        let away = p - start;
+        let distance = away.norm();
+        let [u, v] = tangents(&Direction::try_new(away, 1e-300)?);
+        let place = |at: &Vector2<f64>| start + (u * at.x + v * at.y) * distance;
+        let length = |at: [f64; 2]| {
+            self.land(&place(&at.into()), p).map_or(f64::INFINITY, |foot| foot.squared)
+        };
+        let (_, at) = lowest(length, [0.0; 2], 0.03, 1e-12);
+        self.land(&place(&at.into()), p)
     }
 
     /// The surface point that is reached along the gradient; `None` where there is none near.

@@ -77,9 +77,9 @@ fn points(shape: &impl Implicit, random: &mut Stream) -> [Point; 4] {
 
 /// Of a thousand nearest points so many may not be the nearest. The search promises none: on spikes and cones of
 /// exponents over 2 it follows what its starts show.
-const MISSED: usize = 25;
+const MISSED: usize = 15;
 /// The same of surfaces without end, where the grid covers a part only.
-const MISSED_OF_ENDLESS: usize = 60;
+const MISSED_OF_ENDLESS: usize = 30;
 
 /// By a grid over the angles.
 pub(super) fn nearest<S: Implicit + Parametric + Debug>(make: Make<S>) {
