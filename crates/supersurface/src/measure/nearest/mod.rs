@@ -7,12 +7,14 @@
 //! that need no second derivatives narrow down the angles, and the place on the surface.
 //!
 //! Guaranteed: the point lies on the surface (gauge 1 within 1e-9), the distance is that to this point, so never under
-//! the true one, and its sign is that of `gauge - 1`. Not guaranteed: that no other point is nearer. A minimum whose
-//! basin is narrower than about 1/40 of the surface along either angle may be missed, and so may a piece of the surface
-//! that neither the grid nor a ray comes near. Of random queries of members with
-//! exponents from 0.1 to 2.5 none was missed where the grid covers the surface, 1 in 80 on creased and sharp solids by rays alone,
-//! and 1 in 40 on surfaces without end (their far ridges, the sheet that the angles leave out). On edges the distance is exact to about 1e-8 of itself. For
-//! superellipsoids and supertoroids [`ClosestFinder`](super::ClosestFinder) is faster and bounds what it skips.
+//! the true one, and its sign is that of `gauge - 1`. On edges it is exact to about 1e-8 of itself.
+//!
+//! Not guaranteed: that no other point is nearer. A minimum whose basin is narrower than about 1/40 of the surface along
+//! either angle may be missed, and so may a piece of the surface that neither the grid nor a ray comes near. Of random
+//! queries of members with exponents from 0.1 to 2.5 none was missed where the grid covers the surface, 1 in 80 on
+//! creased and sharp solids by rays alone, 1 in 40 on surfaces without end (their far ridges, the sheet that the angles
+//! leave out). For superellipsoids and supertoroids [`ClosestFinder`](super::ClosestFinder) is faster and bounds what
+//! it skips.
 
 mod grid;
 mod quasi_newton;
@@ -92,16 +94,19 @@ impl<'a, S: Implicit> NearestFinder<'a, S> {
         starts.extend(rays::hits(shape, p, reach));
         starts.sort_by(|a, b| (a - p).norm_squared().total_cmp(&(b - p).norm_squared()));
         let feet = starts.iter().take(VALLEYS).filter_map(|start| self.surface.slide(start, p));
-        let mut best: Option<Foot> = None;
+        let (mut best, mut smooth): (Option<Foot>, bool) = (None, true);
         for foot in feet {
+            smooth &= foot.settled;
             if best.as_ref().is_none_or(|b| foot.squared < b.squared) {
                 best = Some(foot);
             }
         }
         let mut best = best?;
-        if !best.settled {
+        if !smooth {
             let on_grid = self.grid.as_ref().and_then(|g| self.surface.land(&g.narrow(p).0, p));
             best = on_grid.filter(|foot| foot.squared < best.squared).unwrap_or(best);
+        }
+        if !best.settled {
             for _ in 0..NARROWED {
                 let before = best.squared;
                 let turned = rays::narrow(shape, &best.point, p);
