@@ -22,8 +22,6 @@ mod rays;
 mod simplex;
 mod slide;
 
-use nalgebra::Matrix3;
-
 use self::grid::Grid;
 use self::slide::{Foot, Surface};
 use super::Closest;
@@ -72,8 +70,7 @@ impl<'a, S: Implicit> NearestFinder<'a, S> {
     where
         S: SecondOrder,
     {
-        let hessian: fn(&S, &Point) -> Option<Matrix3<f64>> = S::hessian;
-        self.surface.hessian = Some(hessian);
+        self.surface.hessian = Some(S::hessian);
         self
     }
 

@@ -11,11 +11,14 @@ use crate::measure::implicit_curvature::tangents;
 use crate::shape::Implicit;
 use crate::{Direction, Point, Vector};
 
+/// [`SecondOrder::hessian`](crate::shape::SecondOrder::hessian) of a shape that has it.
+pub(super) type Hessian<S> = fn(&S, &Point) -> Option<Matrix3<f64>>;
+
 /// A gauge with the second derivatives that are known of it.
 #[derive(Debug)]
 pub(super) struct Surface<'a, S> {
     pub(super) shape: &'a S,
-    pub(super) hessian: Option<fn(&S, &Point) -> Option<Matrix3<f64>>>,
+    pub(super) hessian: Option<Hessian<S>>,
 }
 
 /// A point of the surface and what it promises.
@@ -106,8 +109,7 @@ impl<S: Implicit> Surface<'_, S> {
             let unit = gradient / largest;
             let moved = point - unit * (excess / largest / unit.norm_squared());
             let next = self.shape.gauge(&moved) - 1.0;
-            // negated: also where it is NaN
-            if !(next.abs() < excess.abs()) {
+            if next.is_nan() || next.abs() >= excess.abs() {
                 break;
             }
             (point, excess) = (moved, next);
