@@ -99,7 +99,7 @@ pub(super) fn point_extremes<S: Implicit>(make: Make<S>) {
                     assert!(finite(numbers) && hit.distance <= max, "{p}: {hit:?}");
                 }
             }
-            let found = (i % 2000 == 0).then(|| finder.find(&p)).flatten();
+            let found = (i % 5000 == 0).then(|| finder.find(&p)).flatten();
             assert!(
                 found.is_none_or(|f| finite(f.point.iter().chain([&f.distance]))),
                 "{p}: {found:?}"
