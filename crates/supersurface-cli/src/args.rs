@@ -5,6 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
+use crate::gallery::GalleryArgs;
+use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
+use crate::threads::MOST;
+
 /// Recovers the objects of a depth camera's cloud as superellipsoids and supertoroids, and plans grasps.
 ///
 /// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 no table or nothing on it, 5 output failed.
@@ -21,6 +25,14 @@ pub(crate) enum Command {
     Grasp(Box<GraspArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
+    /// Draws the figures that explain the family.
+    Gallery(GalleryArgs),
+    /// What a shape is: size, volume, mass.
+    Info(InfoArgs),
+    /// A watertight triangle mesh of a shape.
+    Mesh(MeshArgs),
+    /// Points on a shape, as a scanner might give them.
+    Sample(SampleArgs),
 }
 
 /// What to read and how to read it.
@@ -107,8 +119,8 @@ pub(crate) struct HowArgs {
     /// Family of surfaces.
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
-    /// Number of threads; results do not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+    /// Number of threads; results do not depend on it. Fewer are used where the system starts no more.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
     pub(crate) threads: Option<u16>,
 }
 

@@ -13,7 +13,8 @@ use crate::outputs::{Run, Source};
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let name = format!("demo scene {}", args.seed);
     let stage = ("look", "looking at a scene that was just made".into());
-    Run { how: &args.how, output: &args.output, name: &name }.run(stage, || source(args.seed))
+    Run { how: &args.how, output: &args.output, name: &name, inputs: &[] }
+        .run(stage, || source(args.seed))
 }
 
 fn source(seed: u64) -> Result<Source, Failure> {

@@ -1,12 +1,12 @@
 //! From the command line to a cloud: file, camera, units, frame, viewpoint, given objects.
 
-use supersurface::cloud::{PointCloud, unit_hint};
+use supersurface::cloud::{PointCloud, UnitHint, unit_hint};
 use supersurface::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use supersurface::pipeline::Objects;
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::{DepthCamera, Read, ReadOptions, read_camera, read_mask};
 
-use crate::args::GraspArgs;
+use crate::args::{GraspArgs, Units};
 use crate::exit::Failure;
 use crate::outputs::Source;
 
@@ -23,13 +23,6 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     if factor != 1.0 {
         cloud = cloud.scaled(factor);
     }
-    if let Some(hint) = unit_hint(&cloud) {
-        warnings.push(if factor == 1.0 {
-            format!("this looks like {hint}: pass --units {}", hint.sign())
-        } else {
-            "the scene is of an unlikely size: check --units".to_owned()
-        });
-    }
     if let Some(text) = &args.viewpoint {
         cloud.viewpoint = viewpoint(text)?;
     } else if args.segmented && cloud.viewpoint.is_some_and(|eye| surrounds(&cloud, &eye)) {
@@ -40,6 +33,8 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
                 .to_owned(),
         );
     }
+    // after the viewpoint, as the distance from the sensor tells the unit too
+    warnings.extend(units(&cloud, args.units));
     let mut frame = "cloud";
     if let Some(numbers) = &args.camera_pose {
         cloud = cloud.moved(&pose(numbers)?);
@@ -54,6 +49,19 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     };
     check(&name, &cloud)?;
     Ok(Source { cloud, frame, warnings, objects })
+}
+
+/// What to say of a cloud whose size is unlikely in metres.
+fn units(cloud: &PointCloud, said: Units) -> Option<String> {
+    let hint = unit_hint(cloud)?;
+    Some(match (said, hint) {
+        (Units::M, UnitHint::Centimetres) => {
+            "this looks like centimetres: pass --units cm (or --units mm for a small part)"
+                .to_owned()
+        }
+        (Units::M, _) => format!("this looks like {hint}: pass --units {}", hint.sign()),
+        _ => "the scene is of an unlikely size: check --units".to_owned(),
+    })
 }
 
 /// Whether a place lies within the box of a cloud.

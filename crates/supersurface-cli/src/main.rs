@@ -3,12 +3,15 @@
 mod args;
 mod demo;
 mod exit;
+mod gallery;
 mod grasp;
 mod input;
 mod outputs;
 mod progress;
+mod shape;
 mod show;
 mod terminal;
+mod threads;
 
 use std::process::ExitCode;
 
@@ -20,6 +23,10 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Grasp(args) => grasp::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Gallery(args) => gallery::run(args),
+        Command::Info(args) => shape::info(args),
+        Command::Mesh(args) => shape::mesh(args),
+        Command::Sample(args) => shape::sample(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,16 +1,20 @@
 //! One run of the pipeline and everything that it leaves: table or JSON, labels, grasps, picture.
 
+use std::path::{Path, PathBuf};
+
 use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
 use supersurface::grasp::Gripper;
 use supersurface::pipeline::{self, Objects, Options, Report};
-use supersurface::segment::{SegmentError, Segmentation};
-use supersurface_io::{ReportHead, failure_json, report_json};
+use supersurface::segment::SegmentError;
+use supersurface_io::{
+    BUILT_IN_GRIPPERS, ReportHead, failure_json, report_json, write_grasps, write_labels, write_png,
+};
 
 use crate::args::{HowArgs, OutputArgs};
 use crate::exit::{Failure, print};
 use crate::progress::Progress;
-use crate::{show, terminal};
+use crate::{show, terminal, threads};
 
 /// A cloud with what is known about it.
 pub(crate) struct Source {
@@ -27,6 +31,8 @@ pub(crate) struct Run<'a> {
     pub(crate) output: &'a OutputArgs,
     /// Name of the input, for the report.
     pub(crate) name: &'a str,
+    /// Files that are read, beside the gripper.
+    pub(crate) inputs: &'a [&'a Path],
 }
 
 impl Run<'_> {
@@ -35,17 +41,52 @@ impl Run<'_> {
     pub(crate) fn run(
         &self,
         stage: (&'static str, String),
-        source: impl FnOnce() -> Result<Source, Failure>,
+        source: impl FnOnce() -> Result<Source, Failure> + Send,
     ) -> Result<(), Failure> {
+        self.check_files()?;
         let gripper = supersurface_io::read_gripper(&self.how.gripper).map_err(Failure::input)?;
-        threads(self.how.threads)?;
         let mut progress = Progress::new(self.output.quiet);
+        let (pool, fewer) = threads::pool(self.how.threads)?;
+        if let Some(warning) = fewer {
+            progress.warn(&warning);
+        }
         progress.begin(stage.0, stage.1);
+        pool.install(|| self.go(source, &gripper, progress))
+    }
+
+    /// No output may replace another one or what is read.
+    fn check_files(&self) -> Result<(), Failure> {
+        let built_in = BUILT_IN_GRIPPERS.iter().any(|(name, _)| *name == self.how.gripper);
+        let gripper = (!built_in).then_some(Path::new(&self.how.gripper));
+        let read = self.inputs.iter().copied().filter(|p| *p != Path::new("-")).chain(gripper);
+        let mut taken: Vec<PathBuf> = read.map(place).collect();
+        let OutputArgs { labels, grasps, png, .. } = self.output;
+        for (option, file) in [("--labels", labels), ("--grasps", grasps), ("--png", png)] {
+            let Some(file) = file else { continue };
+            let place = place(file);
+            // devices and pipes may take more than one
+            if taken.contains(&place) && (place.is_file() || !place.exists()) {
+                let file = file.display();
+                let problem =
+                    format!("{option} {file}: the file is read, or another output goes there");
+                return Err(Failure::usage(problem));
+            }
+            taken.push(place);
+        }
+        Ok(())
+    }
+
+    fn go(
+        &self,
+        source: impl FnOnce() -> Result<Source, Failure>,
+        gripper: &Gripper,
+        mut progress: Progress,
+    ) -> Result<(), Failure> {
         let source = match source() {
             Ok(source) => source,
             Err(failure) => {
-                let left = self.leave_nothing(failure.message(), None, &gripper, progress.finish());
-                return Err(also(left, failure, &progress));
+                let left = self.leave(Err(failure.message()), None, gripper, progress);
+                return Err(failure.and(left));
             }
         };
         for warning in &source.warnings {
@@ -57,21 +98,28 @@ impl Run<'_> {
             ..Options::default()
         };
         let told = &mut |stage| progress.stage(stage);
-        match pipeline::run(&source.cloud, &gripper, &options, told) {
-            Ok(report) => self.succeed(&source, &report, &gripper, progress),
-            Err(error) => {
-                let mend = match error {
-                    SegmentError::NoSupport { .. } => {
-                        "; if the cloud is one object, pass --segmented"
-                    }
-                    _ => "",
-                };
-                let message = format!("{}: {error}{mend}", self.name);
-                let times = progress.finish();
-                let left = self.leave_nothing(&message, Some(&source), &gripper, times);
-                Err(also(left, Failure::nothing(message), &progress))
+        let found = pipeline::run(&source.cloud, gripper, &options, told);
+        let found = found.map_err(|error| self.no_result(&error, &source.cloud));
+        let result = found.as_ref().map_err(String::as_str);
+        let mut left = self.leave(result, Some(&source), gripper, progress).into_iter();
+        match result {
+            Err(message) => Err(Failure::nothing(message).and(left)),
+            Ok(report) if report.objects.is_empty() => {
+                let message = format!("{}: nothing stands on the table", self.name);
+                Err(Failure::nothing(message).and(left))
             }
+            Ok(_) => left.next().map_or(Ok(()), |first| Err(first.and(left))),
         }
+    }
+
+    /// Why the pipeline gave nothing, and the mend.
+    fn no_result(&self, error: &SegmentError, cloud: &PointCloud) -> String {
+        let mend = match error {
+            SegmentError::NoSupport { .. } => "; if the cloud is one object, pass --segmented",
+            SegmentError::NoFinitePoints { .. } if cloud.finite_count() > 0 => "; check --units",
+            _ => "",
+        };
+        format!("{}: {error}{mend}", self.name)
     }
 
     fn head<'b>(
@@ -91,101 +139,54 @@ impl Run<'_> {
         }
     }
 
-    fn succeed(
+    /// Leaves everything that was asked for, whatever of it fails, and gives the failures. A run without a result
+    /// leaves labels and grasps of nothing, a picture of the cloud, and a report that says why.
+    fn leave(
         &self,
-        source: &Source,
-        report: &Report,
+        result: Result<&Report, &str>,
+        source: Option<&Source>,
         gripper: &Gripper,
         mut progress: Progress,
-    ) -> Result<(), Failure> {
-        let cloud = &source.cloud;
+    ) -> Vec<Failure> {
+        let nothing = Report::default();
+        let report = result.unwrap_or(&nothing);
+        let mut left = Vec::new();
         if let Some(path) = &self.output.labels {
-            let labels = report.segmentation.labels(&cloud.points);
-            supersurface_io::write_labels(path, &labels).map_err(Failure::output)?;
+            let points = source.map_or(&[][..], |s| &s.cloud.points);
+            left.push(write_labels(path, &report.segmentation.labels(points)));
         }
-        if let Some(path) = &self.output.png {
+        if let (Some(path), Some(source)) = (&self.output.png, source) {
             progress.begin("draw", "drawing".into());
-            let image = show::picture(cloud, report, gripper);
-            let size = [image.width, image.height];
-            supersurface_io::write_png(path, size, &image.pixels).map_err(Failure::output)?;
+            let image = show::picture(&source.cloud, report, gripper);
+            left.push(write_png(path, [image.width, image.height], &image.pixels));
         }
         let times = progress.finish();
         if let Some(path) = &self.output.grasps {
             let planning = times.iter().filter(|(name, _)| *name != "draw" && *name != "look");
             let seconds = planning.map(|(_, s)| s).sum();
-            supersurface_io::write_grasps(
-                path,
-                &report.objects,
-                gripper,
-                frame_id(source),
-                seconds,
-            )
-            .map_err(Failure::output)?;
+            let frame = source.map_or("camera", frame_id);
+            left.push(write_grasps(path, &report.objects, gripper, frame, seconds));
         }
-        let text = if self.output.json {
-            report_json(report, &self.head(Some(source), gripper, times)) + "\n"
-        } else {
-            terminal::table(report, self.output.top)
+        let head = self.head(source, gripper, times);
+        let text = match result {
+            Ok(report) if self.output.json => report_json(report, &head) + "\n",
+            Err(message) if self.output.json => failure_json(message, &head) + "\n",
+            Ok(report) => terminal::table(report, self.output.top),
+            Err(_) => String::new(),
         };
-        print(&text)?;
-        if report.objects.is_empty() {
-            return Err(Failure::nothing(format!("{}: nothing stands on the table", self.name)));
-        }
-        Ok(())
-    }
-
-    /// What a run without results leaves: labels and grasps of nothing, a picture of the cloud, and a report that
-    /// says why.
-    fn leave_nothing(
-        &self,
-        message: &str,
-        source: Option<&Source>,
-        gripper: &Gripper,
-        times: &[(&'static str, f64)],
-    ) -> Result<(), Failure> {
-        if let Some(path) = &self.output.labels {
-            let points = source.map_or(&[][..], |s| &s.cloud.points);
-            let labels = Segmentation::default().labels(points);
-            supersurface_io::write_labels(path, &labels).map_err(Failure::output)?;
-        }
-        if let Some(path) = &self.output.grasps {
-            let seconds = times.iter().map(|t| t.1).sum();
-            supersurface_io::write_grasps(
-                path,
-                &[],
-                gripper,
-                source.map_or("camera", frame_id),
-                seconds,
-            )
-            .map_err(Failure::output)?;
-        }
-        if let (Some(path), Some(source)) = (&self.output.png, source) {
-            let image = show::picture(&source.cloud, &Report::default(), gripper);
-            let size = [image.width, image.height];
-            supersurface_io::write_png(path, size, &image.pixels).map_err(Failure::output)?;
-        }
-        if self.output.json {
-            print(&(failure_json(message, &self.head(source, gripper, times)) + "\n"))?;
-        }
-        Ok(())
+        let left = left.into_iter().map(|written| written.map_err(Failure::output));
+        left.chain([print(&text)]).filter_map(Result::err).collect()
     }
 }
 
-/// The failure of a run, after what else failed when it was written down.
-fn also(left: Result<(), Failure>, failure: Failure, progress: &Progress) -> Failure {
-    if let Err(other) = left {
-        progress.warn(other.message());
-    }
-    failure
+/// Where a path leads, through all links; its file may not be there yet.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let new = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(new).unwrap_or_else(|| path.to_owned())
 }
 
 /// The frame of a grasp file: that of the cloud, or the one into which the camera's pose leads.
 fn frame_id(source: &Source) -> &'static str {
     if source.frame == "cloud" { "camera" } else { "world" }
-}
-
-fn threads(count: Option<u16>) -> Result<(), Failure> {
-    let Some(count) = count else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.into());
-    pool.build_global().map_err(Failure::usage)
 }

@@ -1,5 +1,6 @@
 //! What is going on, on standard error: a spinner on a terminal, nothing in a pipe.
 
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -22,7 +23,10 @@ impl Progress {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
         };
         bar.set_style(ProgressStyle::default_spinner());
-        bar.enable_steady_tick(Duration::from_millis(100));
+        // the spinner turns by a thread of its own, which a system without room for one refuses by a panic
+        if !bar.is_hidden() && thread::Builder::new().spawn(|| {}).is_ok_and(|t| t.join().is_ok()) {
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
         Self { bar, began: Instant::now(), running: None, times: Vec::new() }
     }
 

@@ -65,13 +65,17 @@ pub fn read_camera(file: &Path) -> Result<DepthCamera, ReadError> {
     let read: File = serde_json::from_slice(&bytes)
         .map_err(|e| fault(Fault::new(format!("line {}", e.line()), e.to_string())))?;
     let distortion = padded(&read.distortion).map_err(fault)?;
-    Ok(DepthCamera {
-        size: Some([read.width, read.height]),
+    let size = [read.width, read.height];
+    let camera = DepthCamera {
+        size: Some(size),
         focal: [read.fx, read.fy],
         centre: [read.cx, read.cy],
         distortion,
         depth_scale: read.depth_scale,
-    })
+    };
+    // now, while the file to be mended can be named
+    camera.camera(size).map_err(fault)?;
+    Ok(camera)
 }
 
 /// Up to eight coefficients, the rest zero.

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use supersurface::camera::DepthImage;
+use supersurface::camera::{Camera, DepthImage};
 use supersurface::cloud::PointCloud;
 
 use crate::error::{Fault, ReadError};
@@ -41,7 +41,34 @@ pub(crate) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Read, Fault> 
     let depth = grey.values.iter().map(metres).collect();
     let image = DepthImage::new(grey.size, depth)
         .ok_or_else(|| Fault::new("data", "the image has another size than its header says"))?;
-    Ok(Read { cloud: PointCloud::from_depth(&image, &camera), warnings: Vec::new() })
+    let cloud = PointCloud::from_depth(&image, &camera);
+    if depth_camera.distortion != [0.0; 8] {
+        leads_back(&cloud, &image, &camera)?;
+    }
+    Ok(Read { cloud, warnings: Vec::new() })
+}
+
+/// Pixels by which a point may miss the reading that it was made of.
+const MISS: f64 = 0.1;
+
+/// Whether the lens' distortion was undone at every reading: its map is not one to one where coefficients are
+/// wrong, and the points there are too.
+fn leads_back(cloud: &PointCloud, image: &DepthImage, camera: &Camera) -> Result<(), Fault> {
+    let [width, _] = image.size();
+    for (i, (point, depth)) in cloud.points.iter().zip(image.depth()).enumerate() {
+        let (u, v) = ((i % width) as f64, (i / width) as f64);
+        let z = f64::from(*depth);
+        let back = camera.project(&(point / z)).map(|p| (p[0] - u).hypot(p[1] - v));
+        let reading = z > 0.0 && z.is_finite();
+        if reading && !back.is_some_and(|miss| miss <= MISS) {
+            let problem = format!(
+                "cannot be undone at pixel ({u}, {v}): check the coefficients (k1, k2, p1, p2, k3, k4, k5, k6, of \
+                 this image size), or leave them out (--distortion, or D in the camera file)"
+            );
+            return Err(Fault::new("distortion", problem));
+        }
+    }
+    Ok(())
 }
 
 /// The instances of an organised cloud from an 8- or 16-bit grey image of its size.

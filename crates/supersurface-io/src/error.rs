@@ -22,6 +22,16 @@ pub enum ReadError {
         /// Most bytes that are read.
         limit: u64,
     },
+    /// The memory does not hold the file.
+    #[error(
+        "{file}: its {bytes} bytes do not fit into memory; thin the cloud out, or crop it to the scene"
+    )]
+    NoMemory {
+        /// Name of the file.
+        file: String,
+        /// Its size.
+        bytes: u64,
+    },
     /// A format that is not read.
     #[error("{file}: unsupported format: {format}; {mend}")]
     Unsupported {
@@ -70,13 +80,36 @@ pub(crate) struct Fault {
 
 impl Fault {
     pub(crate) fn new(place: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self { place: place.into(), problem: problem.into() }
+        Self { place: printable(&place.into()), problem: printable(&problem.into()) }
     }
 
     /// A fault in a line (from 1).
     pub(crate) fn line(number: usize, problem: impl Into<String>) -> Self {
         Self::new(format!("line {number}"), problem)
     }
+}
+
+/// Most characters of a place or a problem.
+const MOST: usize = 400;
+
+/// A message that may quote what a file says: in one line, nothing in it steers a terminal, and the middle of what
+/// is long is left out (the mend stands at the end).
+fn printable(text: &str) -> String {
+    let count = text.chars().count();
+    let left_out = if count > MOST { MOST / 2..count - MOST / 2 } else { count..count };
+    let mut out = String::new();
+    for (i, c) in text.chars().enumerate() {
+        match c {
+            _ if left_out.contains(&i) => {
+                out.push_str(if i == left_out.start { " ... " } else { "" });
+            }
+            '\n' | '\t' => out.push(' '),
+            // the quotes that messages have
+            '"' | '\'' | '\\' => out.push(c),
+            _ => out.extend(c.escape_debug()),
+        }
+    }
+    out
 }
 
 /// Why a file could not be written.

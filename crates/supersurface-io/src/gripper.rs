@@ -58,6 +58,7 @@ fn parse(file: &str, text: &str) -> Result<Gripper, ReadError> {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct File {
     format: String,
     version: u32,
@@ -74,7 +75,10 @@ struct File {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Frame {
+    approach_axis: Option<String>,
+    closing_axis: Option<String>,
     #[serde(default)]
     mount_frame: String,
     #[serde(rename = "T_tcp_mount")]
@@ -82,6 +86,7 @@ struct Frame {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct JawTable {
     max_opening: f64,
     min_opening: f64,
@@ -100,9 +105,15 @@ struct JawTable {
     inside: bool,
     outer_width_closed: Option<f64>,
     outside_mu: Option<f64>,
+    /// Known, and of no influence on grasps.
+    #[serde(rename = "max_force")]
+    _max_force: Option<f64>,
+    #[serde(rename = "speed")]
+    _speed: Option<f64>,
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct CupTable {
     lip_radius: f64,
     inner_radius: f64,
@@ -113,9 +124,13 @@ struct CupTable {
     min_curvature_radius: f64,
     vacuum: f64,
     mu: f64,
+    /// Known, and of no influence on grasps.
+    #[serde(rename = "spring_strain_max")]
+    _spring_strain_max: Option<f64>,
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct BoxTable {
     center: [f64; 3],
     size: [f64; 3],
@@ -124,6 +139,7 @@ struct BoxTable {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Motion {
     approach_distance: f64,
     lift_distance: f64,
@@ -132,6 +148,9 @@ struct Motion {
 /// The ranges that every length, force and coefficient must keep.
 const POSITIVE: &str = "positive and finite";
 const NOT_NEGATIVE: &str = "zero or positive, and finite";
+/// The tool frame is fixed: a file may name its axes, not choose them.
+const AXES: &str = "that of the tool frame (approach_axis +z, closing_axis +x): \
+                    turn the boxes and T_tcp_mount into it";
 
 impl File {
     fn gripper(&self) -> Result<Gripper, InvalidGripper> {
@@ -142,11 +161,27 @@ impl File {
             "\"grasp-gripper\"",
         )?;
         self.check(self.version == 1, "version", f64::from(self.version), "1")?;
+        let printable = |c: char| !c.is_control();
+        let fair =
+            (1..=64).contains(&self.name.chars().count()) && self.name.chars().all(printable);
+        self.check(
+            fair,
+            "name",
+            format!("{:?}", self.name),
+            "1 to 64 characters without controls",
+        )?;
+        let (approach, closing) = (&self.frame.approach_axis, &self.frame.closing_axis);
+        for (what, said, is) in [("approach_axis", approach, "+z"), ("closing_axis", closing, "+x")]
+        {
+            let said = said.as_deref().unwrap_or(is);
+            self.check(said == is, what, format!("{said:?}"), AXES)?;
+        }
         let kind = match (self.kind.as_str(), &self.jaw, &self.cup) {
-            ("parallel", Some(jaw), _) => Kind::Jaw(self.jaw(jaw)?),
-            ("suction", _, Some(cup)) => Kind::Suction(self.cup(cup)?),
+            ("parallel", Some(jaw), None) => Kind::Jaw(self.jaw(jaw)?),
+            ("suction", None, Some(cup)) if self.finger.is_empty() => Kind::Suction(self.cup(cup)?),
             _ => {
-                let range = "\"parallel\" with a [jaw] or \"suction\" with a [cup]";
+                let range = "\"parallel\" with a [jaw] and no [cup], or \"suction\" with a [cup] and no \
+                             [jaw] or [[finger]]";
                 return Err(self.error("kind", format!("{:?}", self.kind), range));
             }
         };
@@ -185,6 +220,8 @@ impl File {
         }
         let below = t.min_opening < t.max_opening;
         self.check(below, "min_opening", t.min_opening, "less than max_opening")?;
+        let below = t.clearance < t.max_opening;
+        self.check(below, "clearance", t.clearance, "less than max_opening, in metres")?;
         let rising = t.tip_arc.windows(2).all(|w| w[0][0] < w[1][0]);
         let finite = t.tip_arc.iter().flatten().all(|v| v.is_finite());
         self.check(

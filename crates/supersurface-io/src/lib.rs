@@ -6,7 +6,10 @@
 //! | camera intrinsics (JSON) | in | [`read_camera`] |
 //! | instance mask (PNG) | in | [`read_mask`] |
 //! | gripper (TOML) | in | [`read_gripper`] |
+//! | shape (JSON) | in | [`read_shape`] |
+//! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
+//! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
 //! before they look at the file, and refuse files that depth cameras and PCL write every day (padding
@@ -22,24 +25,30 @@
 
 mod bytes;
 mod camera_json;
+mod cloud_files;
 mod depth_png;
 mod error;
 mod grasps_json;
 mod gripper;
+mod mesh_files;
 mod npy;
 mod pcd;
 mod ply;
 mod read;
 mod report_json;
+mod shape_json;
 mod text;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
+pub use cloud_files::write_points;
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;
 pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
+pub use mesh_files::write_mesh;
 pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
+pub use shape_json::{Model, parse_shape, read_shape};
 pub use write::write_png;

@@ -61,7 +61,7 @@ pub(crate) fn load(file: &Path) -> Result<Vec<u8>, ReadError> {
         }
         bytes
             .try_reserve_exact(length as usize)
-            .map_err(|_| ReadError::TooLarge { file: name(), limit: LIMIT })?;
+            .map_err(|_| ReadError::NoMemory { file: name(), bytes: length })?;
         opened.take(LIMIT + 1).read_to_end(&mut bytes)
     };
     read.map_err(io)?;

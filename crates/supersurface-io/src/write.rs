@@ -6,13 +6,14 @@ use std::path::Path;
 
 use crate::error::WriteError;
 
-/// Writes `bytes` to a file. What is no regular file (a pipe, `/dev/stdout`) is written straight.
+/// Writes `bytes` to a file. What is there and no regular file (a link, a pipe, `/dev/stdout`) is written through,
+/// never replaced: a rename would put a plain file in its place.
 pub(crate) fn write_bytes(file: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let failed = |e| WriteError::new(file, e);
-    let straight = fs::metadata(file).is_ok_and(|m| !m.is_file());
-    if straight {
-        let mut out = fs::OpenOptions::new().write(true).open(file).map_err(failed)?;
-        return out.write_all(bytes).map_err(failed);
+    if fs::symlink_metadata(file).is_ok_and(|m| !m.is_file()) {
+        let mut options = fs::OpenOptions::new();
+        let opened = options.write(true).create(true).truncate(true).open(file);
+        return opened.and_then(|mut out| out.write_all(bytes)).map_err(failed);
     }
     let Some(name) = file.file_name() else {
         return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, "no file name")));

@@ -11,6 +11,7 @@
 //! | 3 | [`measure`], [`camera`] | first hits, nearest points, curvatures, boxes; pinhole cameras and depth images |
 //! | 4 | [`deform`] | shapes tapered, twisted, bent, hollowed; deformations nest |
 //! | 5 | [`surface`] | the closed family as one type, for files and programs |
+//! | 6 | [`combine`] | Boolean trees of solids; parts joined to an assembly |
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
 //! | 6 | [`mesh`] | watertight triangle meshes; points spread evenly on curves and surfaces |
 //! | 7 | [`segment`], [`fit`] | table plane and objects; one supersurface per object |
@@ -31,6 +32,7 @@ pub use nalgebra;
 
 pub mod camera;
 pub mod cloud;
+pub mod combine;
 pub mod deform;
 pub mod fit;
 pub mod grasp;

@@ -81,6 +81,17 @@ fn numbers_that_are_none() {
 }
 
 #[test]
+fn what_is_too_far_is_not_said_to_be_no_number() {
+    let far = lines((0..500).map(|k| [1e300 * f64::from(k), -1e308, 1e305]));
+    for options in [&["grasp", "-"][..], &["grasp", "-", "--segmented"]] {
+        let ran = run_on(options, far.as_bytes()).ended(4);
+        assert!(ran.stderr.contains("within 100,000 km; check --units"), "{}", ran.stderr);
+        let ran = run_on(options, lines((0..99).map(|_| [f64::NAN; 3])).as_bytes()).ended(4);
+        assert!(!ran.stderr.contains("--units"), "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn any_scale() {
     for scale in [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9] {
         ends(&format!("scale {scale}"), &scene(scale));

@@ -68,6 +68,22 @@ fn millimetres_are_noticed_and_read() {
 }
 
 #[test]
+fn centimetres_are_noticed_and_a_viewpoint_is_considered_before() {
+    let cloud = xyz(&seen().0, 1e-2);
+    let ran = run_on(&["grasp", "-", "--json"], cloud.as_bytes());
+    assert!(ran.stderr.contains("this looks like centimetres: pass --units cm"), "{}", ran.stderr);
+    let ran = run_on(&["grasp", "-", "--json", "--units", "cm"], cloud.as_bytes()).ended(0);
+    assert!(ran.stderr.is_empty(), "{}", ran.stderr);
+    // a frame whose origin is far away, with the sensor beside the table
+    let mut far = String::new();
+    for p in seen().0.points.iter().filter(|p| p.x.is_finite()) {
+        let _ = writeln!(far, "{} {} {}", p.x + 500.0, p.y, p.z);
+    }
+    let ran = run_on(&["grasp", "-", "--json", "--viewpoint", "500,0,0"], far.as_bytes()).ended(0);
+    assert!(ran.stderr.is_empty(), "{}", ran.stderr);
+}
+
+#[test]
 fn a_camera_pose_moves_every_result() {
     let cloud = xyz(&seen().0, 1.0);
     let file = scratch("moved.xyz");

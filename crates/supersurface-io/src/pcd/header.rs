@@ -45,6 +45,8 @@ pub(super) struct Header {
 
 /// A header has few lines; more means that this is no PCD file.
 const MOST_LINES: usize = 200;
+/// Most bytes of a line of the header.
+const MOST_LINE: usize = 1 << 20;
 /// Most bytes or values of a row.
 const MOST_ROW: usize = 1 << 20;
 
@@ -58,7 +60,13 @@ impl Header {
                 break;
             }
             let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-            let line = String::from_utf8_lossy(&rest[..end.min(4096)]).into_owned();
+            let line = String::from_utf8_lossy(&rest[..end.min(MOST_LINE)]).into_owned();
+            if end > MOST_LINE && !line.starts_with('#') {
+                let problem = format!(
+                    "the header has a line of {end} bytes, over {MOST_LINE}: is this a PCD file?"
+                );
+                return Err(Fault::line(number, problem));
+            }
             rest = rest.get(end + 1..).unwrap_or(&[]);
             if raw.take(number, line.trim())? {
                 return Ok((raw.finish(number)?, rest));
@@ -108,8 +116,12 @@ impl Raw {
             "HEIGHT" => self.height = Some(single(&mut words)?),
             "POINTS" => self.points = Some(single(&mut words)?),
             "VIEWPOINT" => {
-                let numbers: Vec<f64> = words.filter_map(|w| w.parse().ok()).collect();
-                self.viewpoint = numbers.try_into().ok();
+                let numbers: Option<Vec<f64>> = words.map(|w| w.parse().ok()).collect();
+                let viewpoint = numbers.and_then(|n| n.try_into().ok()).ok_or_else(|| {
+                    let mend = "seven numbers x y z qw qx qy qz are needed; 0 0 0 1 0 0 0 where the pose is unknown";
+                    Fault::line(number, format!("{}: {mend}", line.trim()))
+                })?;
+                self.viewpoint = Some(viewpoint);
             }
             "DATA" => {
                 self.encoding = Some(match words.next() {

@@ -24,13 +24,18 @@ pub(crate) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Read, Fault> 
         Encoding::Binary => binary::read(&header, body, &wanted, &mut rows)?,
         Encoding::Compressed => binary::read_compressed(&header, body, &wanted, &mut rows)?,
     }
+    let world = world(&header.viewpoint);
+    if world.is_none() {
+        warnings.push("VIEWPOINT is no pose (a length of its quaternion is 0, or a number not finite): not used".into());
+    }
+    let world = world.filter(|pose| *pose != Pose::identity());
     let organised = header.height > 1 && header.width > 1;
     let cloud = PointCloud {
         points: rows.points,
         colours: rows.colours,
         labels: rows.labels,
         grid: organised.then_some([header.width, header.height]),
-        world: world(&header.viewpoint),
+        world,
         ..PointCloud::default()
     };
     Ok(Read { cloud, warnings })
@@ -74,7 +79,11 @@ impl Rows {
     /// Room for what the header promises, as far as the body can hold it.
     fn new(header: &Header, wanted: &Wanted, available: usize) -> Result<Self, Fault> {
         let count = header.points.min(available.saturating_mul(100));
-        let short = || Fault::new("POINTS", format!("{count} points are too many for the memory"));
+        let short = || {
+            let problem =
+                format!("{} points do not fit into memory: thin the cloud out", header.points);
+            Fault::new("POINTS", problem)
+        };
         let some = |wanted: bool| if wanted { count } else { 0 };
         Ok(Self {
             points: room(count.min(1 << 22)).ok_or_else(short)?,
@@ -95,11 +104,11 @@ impl Rows {
     }
 }
 
-/// The pose that VIEWPOINT gives; `None` for the identity and for what is no pose.
+/// The pose that VIEWPOINT gives; `None` for what is no pose.
 fn world(viewpoint: &[f64; 7]) -> Option<Pose> {
     let [x, y, z, qw, qx, qy, qz] = *viewpoint;
     let q = UnitQuaternion::try_new(Quaternion::new(qw, qx, qy, qz), 1e-6)?;
     let pose = Pose::from_parts(Vector::new(x, y, z).into(), q);
     let finite = viewpoint.iter().all(|v| v.is_finite());
-    (finite && pose != Pose::identity()).then_some(pose)
+    finite.then_some(pose)
 }

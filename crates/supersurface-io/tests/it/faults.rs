@@ -64,3 +64,86 @@ fn promises_that_the_file_does_not_keep_are_refused_at_once() {
         }
     }
 }
+
+#[test]
+fn elements_without_properties_cost_nothing() {
+    for format in ["ascii", "binary_little_endian"] {
+        let mut file = format!("ply\nformat {format} 1.0\n");
+        file += &"element nothing 1048576\n".repeat(1990);
+        file += "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3 \
+                 and more";
+        let began = std::time::Instant::now();
+        let read = parse("many.ply", file.as_bytes(), &Default::default()).unwrap();
+        assert_eq!(read.cloud.points.len(), 1, "{format}");
+        assert!(began.elapsed().as_secs_f64() < 0.5, "{format}: {:?}", began.elapsed());
+    }
+}
+
+#[test]
+fn what_a_file_says_is_quoted_short_and_harmless() {
+    let long = "a".repeat(100_000);
+    let pcd = |fields: &str| {
+        format!(
+            "VERSION 0.7\nFIELDS {fields}\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1\n"
+        )
+    };
+    let ply = |format: &str| format!("ply\nformat {format} 1.0\nend_header\n");
+    for bad in ["\u{1b}[31mred\u{1b}]0;title\u{7}", "\u{202e}back", long.as_str()] {
+        let named = ReadOptions { instances: Some("object".into()), ..Default::default() };
+        for (name, file) in [
+            ("t.xyz", format!("{bad} b c\n1 2 3\n")),
+            ("t.csv", format!("x,y,z,{bad}\n1,2,3,4\n")),
+            ("t.pcd", pcd(bad)),
+            ("t.pcd", pcd("x").replace("DATA ascii", &format!("DATA {bad}"))),
+            ("t.pcd", pcd("x").replace("WIDTH 1", &format!("WIDTH {bad}"))),
+            ("t.ply", ply(bad)),
+            ("t.ply", ply("ascii").replace("end", &format!("element {bad} x\nend"))),
+        ] {
+            let error = parse(name, file.as_bytes(), &named).unwrap_err().to_string();
+            assert!(error.chars().count() < 1000, "{}", error.len());
+            assert!(!error.contains(['\u{1b}', '\u{7}', '\u{202e}', '\n']), "{error:?}");
+        }
+    }
+}
+
+#[test]
+fn a_long_header_line_is_read_whole_or_refused() {
+    let wide = |names: usize| {
+        let fields: String = (0..names).map(|k| format!(" field{k}")).collect();
+        let all = |word: &str| format!(" {word}").repeat(names + 3);
+        let (size, kind) = (all("4"), all("F"));
+        let row = all("1");
+        format!(
+            "VERSION 0.7\nFIELDS x y z{fields}\nSIZE{size}\nTYPE{kind}\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n{row}\n"
+        )
+    };
+    assert_eq!(
+        parse("w.pcd", wide(2000).as_bytes(), &Default::default()).unwrap().cloud.points.len(),
+        1
+    );
+    let error =
+        parse("w.pcd", wide(100_000).as_bytes(), &Default::default()).unwrap_err().to_string();
+    assert!(error.contains("w.pcd") && error.contains("line 2"), "{error}");
+}
+
+#[test]
+fn a_viewpoint_that_is_no_pose_is_told() {
+    let file = String::from_utf8(pcd("ascii")).unwrap();
+    for bad in ["banana", "0 0 1", "0 0 0 1 0 0 zero", "0 0 0 1 0 0 0 0", ""] {
+        let file = file.replace("VIEWPOINT 0 0 1 0 1 0 0", &format!("VIEWPOINT {bad}"));
+        let error = parse("v.pcd", file.as_bytes(), &Default::default()).unwrap_err().to_string();
+        for word in ["v.pcd", "line 9", "VIEWPOINT", "0 0 0 1 0 0 0"] {
+            assert!(error.contains(word), "{error}");
+        }
+    }
+    for (odd, warnings) in [("0 0 0 0 0 0 0", 1), ("nan 0 0 1 0 0 0", 1), ("0 0 0 1 0 0 0", 0)] {
+        let file = file.replace("VIEWPOINT 0 0 1 0 1 0 0", &format!("VIEWPOINT {odd}"));
+        let read = parse("v.pcd", file.as_bytes(), &Default::default()).unwrap();
+        assert_eq!(
+            (read.cloud.world, read.warnings.len()),
+            (None, warnings),
+            "{:?}",
+            read.warnings
+        );
+    }
+}

@@ -1,6 +1,6 @@
 //! Each format by small files that are written here.
 
-use supersurface_io::{DepthCamera, ReadOptions, parse};
+use supersurface_io::{DepthCamera, ReadOptions, parse, read_camera};
 
 /// A PCD of three points in each encoding, the second without a reading.
 pub(crate) fn pcd(encoding: &str) -> Vec<u8> {
@@ -154,6 +154,43 @@ fn depth_becomes_points() {
     assert!((p.x + 0.5).abs() < 1e-9 && (p.y + 0.25).abs() < 1e-9 && (p.z - 1.0).abs() < 1e-6);
     let error = parse("depth.png", &depth_png(), &Default::default()).unwrap_err().to_string();
     assert!(error.contains("--camera"), "{error}");
+}
+
+#[test]
+fn a_distortion_that_cannot_be_undone_is_refused() {
+    let with = |distortion| {
+        let mut options = camera();
+        options.camera.as_mut().unwrap().distortion = distortion;
+        parse("depth.png", &depth_png(), &options)
+    };
+    with([-0.1, 0.02, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+    // folds within the image; a pole of the denominator; numbers without end
+    for k in [[-9.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 50.0], [1e300, 0.0, 0.0, 0.0]] {
+        let error = with([k[0], k[3], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap_err().to_string();
+        assert!(error.contains("depth.png") && error.contains("--distortion"), "{error}");
+    }
+}
+
+#[test]
+fn a_wrong_camera_file_is_named_itself() {
+    let folder = std::env::temp_dir().join(format!("supersurface-camera-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("camera.json");
+    let right =
+        r#"{"width":3,"height":2,"fx":2,"fy":2,"cx":1,"cy":0.5,"depth_scale":1000,"D":[0.1]}"#;
+    std::fs::write(&file, right).unwrap();
+    read_camera(&file).unwrap();
+    for (from, to, word) in [
+        ("\"fx\":2", "\"fx\":0", "fx"),
+        ("\"width\":3", "\"width\":0", "width"),
+        ("\"depth_scale\":1000", "\"depth_scale\":-1", "depth_scale"),
+        ("[0.1]", "[0,0,0,0,0,0,0,0,0]", "D"),
+    ] {
+        std::fs::write(&file, right.replace(from, to)).unwrap();
+        let error = read_camera(&file).unwrap_err().to_string();
+        assert!(error.contains("camera.json") && error.contains(word), "{error}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

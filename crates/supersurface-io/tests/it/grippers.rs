@@ -26,21 +26,37 @@ fn a_broken_file_names_file_and_field() {
     let text = BUILT_IN_GRIPPERS[0].1;
     let folder = std::env::temp_dir().join(format!("supersurface-gripper-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    for (from, to, field) in [
-        ("max_opening = 0.080", "max_opening = -1.0", "max_opening"),
-        ("mu = 0.5\n", "mu = nan\n", "mu"),
-        ("[1.0, 0.0, 0.0", "[2.0, 0.0, 0.0", "kind"),
-        ("[-1.0, 0.0, 0.0, 0.0]", "[-2.0, 0.0, 0.0, 0.0]", "T_tcp_mount"),
-        ("clearance = 0.005", "", "clearance"),
-        ("kind = \"parallel\"", "kind = \"magnet\"", "kind"),
+    let (cup, jaw) = (BUILT_IN_GRIPPERS[2].1, text);
+    for (text, from, to, field) in [
+        (jaw, "max_opening = 0.080", "max_opening = -1.0", "max_opening"),
+        (jaw, "mu = 0.5\n", "mu = nan\n", "mu"),
+        (cup, "[[1.0, 0.0, 0.0", "[[2.0, 0.0, 0.0", "T_tcp_mount"),
+        (jaw, "[-1.0, 0.0, 0.0, 0.0]", "[-2.0, 0.0, 0.0, 0.0]", "T_tcp_mount"),
+        (jaw, "clearance = 0.005", "", "clearance"),
+        (jaw, "clearance = 0.005", "clearance = 5.0", "clearance"),
+        (jaw, "kind = \"parallel\"", "kind = \"magnet\"", "kind"),
+        (jaw, "approach_axis = \"+z\"", "approach_axis = \"-z\"", "approach_axis"),
+        (jaw, "closing_axis = \"+x\"", "closing_axis = \"+y\"", "closing_axis"),
+        (jaw, "name = \"panda_hand\"", "name = \"\\u001b[31m\"", "name"),
+        (jaw, "name = \"panda_hand\"", "name = \"\"", "name"),
+        (jaw, "outside_mu", "outside_nu", "outside_nu"),
+        (jaw, "mount_frame", "mount_farme", "mount_farme"),
+        (jaw, "[motion]", "[motion]\nway = 1", "way"),
+        (jaw, "pad = true", "pads = true", "pads"),
+        (jaw, "[motion]", "[colour]\nred = 1\n[motion]", "colour"),
+        (jaw, "kind = \"parallel\"", "kind = \"suction\"", "kind"),
+        (
+            cup,
+            "[[body]]",
+            "[[finger]]\ncenter = [0.0, 0.0, 0.0]\nsize = [0.1, 0.1, 0.1]\n[[body]]",
+            "kind",
+        ),
     ] {
-        if !text.contains(from) {
-            continue;
-        }
-        let file = folder.join(format!("{field}.toml"));
+        assert!(text.contains(from), "{from}");
+        let file = folder.join("hand.toml");
         std::fs::write(&file, text.replacen(from, to, 1)).unwrap();
         let error = read_gripper(&file.display().to_string()).unwrap_err().to_string();
-        assert!(error.contains(field) && error.contains("toml"), "{error}");
+        assert!(error.contains(field) && error.contains("hand.toml"), "{error}");
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -75,7 +75,8 @@ impl Camera {
     /// The point at depth 1 m (z = 1) that pixel (u, v) sees: its undistorted image coordinates.
     ///
     /// Distortion is undone by fixed-point iteration, which converges for lenses whose map is one to
-    /// one over the image.
+    /// one over the image. Elsewhere the result is of no use: [`Camera::project`] then does not lead back
+    /// to the pixel.
     pub fn unproject(&self, u: f64, v: f64) -> Vector {
         let x0 = (u - self.centre[0]) / self.focal[0];
         let y0 = (v - self.centre[1]) / self.focal[1];
@@ -83,7 +84,8 @@ impl Camera {
             return Vector::new(x0, y0, 1.0);
         }
         let (mut x, mut y) = (x0, y0);
-        for _ in 0..20 {
+        // wide lenses need many steps near the corners, other pixels few
+        for _ in 0..100 {
             let (radial, dx, dy) = self.distort(x, y);
             if radial.abs() < 1e-6 {
                 break;
@@ -140,5 +142,11 @@ mod tests {
             let back = camera.project(&Point::from(camera.unproject(u, v) * 0.7)).unwrap();
             assert!((back[0] - u).abs() < 1e-6 && (back[1] - v).abs() < 1e-6);
         }
+        // a depth camera of 120 degrees, towards its corners
+        let wide = Camera::new([1024, 1024], [505.0, 505.0], [512.0, 512.0])
+            .and_then(|c| c.with_distortion([5.6, 3.4, 0.0, 0.0, 0.18, 5.96, 5.5, 1.0]))
+            .unwrap();
+        let [u, v] = wide.project(&Point::new(1.5, 1.2, 1.0)).unwrap();
+        assert!((wide.unproject(u, v) - Vector::new(1.5, 1.2, 1.0)).norm() < 1e-6);
     }
 }

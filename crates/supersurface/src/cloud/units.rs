@@ -18,6 +18,8 @@ pub enum UnitHint {
     TenthsOfMillimetres,
     /// The cloud looks like millimetres.
     Millimetres,
+    /// The cloud looks like centimetres; a part of some decimetres in millimetres has the same numbers.
+    Centimetres,
     /// The cloud is so small that its metres seem to have been divided by 1,000 once more.
     Kilometres,
 }
@@ -29,6 +31,7 @@ impl UnitHint {
             Self::Micrometres => 1e-6,
             Self::TenthsOfMillimetres => 1e-4,
             Self::Millimetres => 1e-3,
+            Self::Centimetres => 1e-2,
             Self::Kilometres => 1e3,
         }
     }
@@ -39,6 +42,7 @@ impl UnitHint {
             Self::Micrometres => "um",
             Self::TenthsOfMillimetres => "0.1mm",
             Self::Millimetres => "mm",
+            Self::Centimetres => "cm",
             Self::Kilometres => "km",
         }
     }
@@ -50,6 +54,7 @@ impl std::fmt::Display for UnitHint {
             Self::Micrometres => "micrometres",
             Self::TenthsOfMillimetres => "tenths of millimetres",
             Self::Millimetres => "millimetres",
+            Self::Centimetres => "centimetres",
             Self::Kilometres => "kilometres",
         })
     }
@@ -90,9 +95,16 @@ pub fn unit_hint(cloud: &PointCloud) -> Option<UnitHint> {
         column.extend(sample.iter().map(|p| (p - eye).norm()));
         diagonal.max(quantile(&mut column, 0.5))
     });
-    let hints = [UnitHint::Millimetres, UnitHint::TenthsOfMillimetres, UnitHint::Micrometres];
+    // scenes of more metres are hardly kept in centimetres
+    let hints = [
+        (UnitHint::Centimetres, 3.2),
+        (UnitHint::Millimetres, 8.0),
+        (UnitHint::TenthsOfMillimetres, 8.0),
+        (UnitHint::Micrometres, 8.0),
+    ];
     if size > LARGEST {
-        return hints.into_iter().find(|h| (0.02..=8.0).contains(&(size * h.metres())));
+        let fits = |(h, most): &(UnitHint, f64)| (0.02..=*most).contains(&(size * h.metres()));
+        return hints.into_iter().find(fits).map(|(h, _)| h);
     }
     let kilometres = size < SMALLEST && (0.05..=8.0).contains(&(size * 1e3));
     kilometres.then_some(UnitHint::Kilometres)
@@ -125,6 +137,8 @@ mod tests {
 
     #[test]
     fn mixed_up_units_are_named() {
+        assert_eq!(unit_hint(&patch(80.0, 60.0)), Some(UnitHint::Centimetres));
+        assert_eq!(unit_hint(&patch(150.0, 200.0)), Some(UnitHint::Centimetres));
         assert_eq!(unit_hint(&patch(400.0, 0.0)), Some(UnitHint::Millimetres));
         assert_eq!(unit_hint(&patch(900.0, 700.0)), Some(UnitHint::Millimetres));
         assert_eq!(unit_hint(&patch(9e3, 1.2e4)), Some(UnitHint::TenthsOfMillimetres));

@@ -18,6 +18,7 @@
 mod bend;
 mod cavity;
 mod deformed;
+mod pull_back;
 mod shear_bend;
 mod taper;
 mod tapered_radial;
@@ -28,6 +29,7 @@ use nalgebra::Matrix3;
 pub use bend::Bend;
 pub use cavity::Cavity;
 pub use deformed::Deformed;
+pub use pull_back::Adjustable;
 pub use shear_bend::ShearBend;
 pub use taper::Taper;
 pub use twist::Twist;

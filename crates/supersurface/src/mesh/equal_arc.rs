@@ -89,24 +89,20 @@ impl SuperellipseArc {
         half * GAUSS.iter().map(pair).sum::<f64>()
     }
 
-    /// `[X, Y]` and `w` at the chart value.
-    fn chart(&self, t: f64) -> ([f64; 2], f64) {
+    /// `[X, Y]` and the weights `[w, 1 - w]` at the chart value.
+    fn chart(&self, t: f64) -> ([f64; 2], [f64; 2]) {
         let s = self.power * t;
         let small = (-s.abs()).exp();
         let log = small.ln_1p();
-        let minor = small / (1.0 + small);
-        let at = |positive: f64| (-(positive + log) / self.power).exp();
-        let weight = if s > 0.0 { 1.0 - minor } else { minor };
-        ([at(s.max(0.0)), at((-s).max(0.0))], weight)
+        let (major, minor) = (1.0 / (1.0 + small), small / (1.0 + small));
+        let root = |positive: f64| (-(positive + log) / self.power).exp();
+        let weights = if s > 0.0 { [major, minor] } else { [minor, major] };
+        ([root(s.max(0.0)), root((-s).max(0.0))], weights)
     }
 
     /// `ds/dt`.
     fn speed(&self, t: f64) -> f64 {
-        let small = (-(self.power * t).abs()).exp();
-        let minor = small / (1.0 + small);
-        let (w, rest) =
-            if t > 0.0 { (1.0 / (1.0 + small), minor) } else { (minor, 1.0 / (1.0 + small)) };
-        let ([x, y], _) = self.chart(t);
+        let ([x, y], [w, rest]) = self.chart(t);
         let [a, b] = self.semi_axes;
         (a * x * w).hypot(b * y * rest)
     }

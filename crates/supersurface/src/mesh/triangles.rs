@@ -3,10 +3,11 @@
 //! Volume and centroid are sums over tetrahedra with one corner in common, `V = Σ a·(b × c)/6`; they mean something
 //! where the mesh is watertight and its triangles run counter-clockwise seen from outside.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
 
 use crate::shape::InvalidShape;
-use crate::{Direction, Point, Vector};
+use crate::{Direction, Point, Pose, Vector};
 
 /// Vertices in metres and triangles as indices of three vertices, counter-clockwise seen from outside.
 ///
@@ -39,6 +40,11 @@ impl Mesh {
         Ok(Self { vertices, triangles })
     }
 
+    /// The same for indices that are right by construction.
+    pub(super) fn from_checked(vertices: Vec<Point>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices, triangles }
+    }
+
     /// The vertices, in metres.
     pub fn vertices(&self) -> &[Point] {
         &self.vertices
@@ -60,6 +66,23 @@ impl Mesh {
             std::mem::swap(b, c);
         }
         self
+    }
+
+    /// The same mesh moved by a motion.
+    pub fn moved(mut self, motion: &Pose) -> Self {
+        for v in &mut self.vertices {
+            *v = motion * *v;
+        }
+        self
+    }
+
+    /// Both meshes as one; they share no vertex. `None` when together they have more than 2^32 vertices.
+    pub fn beside(mut self, other: &Self) -> Option<Self> {
+        let shift = u32::try_from(self.vertices.len()).ok()?;
+        u32::try_from(self.vertices.len() + other.vertices.len()).ok()?;
+        self.vertices.extend_from_slice(&other.vertices);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + shift)));
+        Some(self)
     }
 
     /// Corners of each triangle, in metres.
@@ -129,13 +152,8 @@ impl Mesh {
     }
 
     /// Running sums of the areas, from which points are drawn.
-    pub fn sampler(&self) -> MeshSampler<'_> {
-        let mut sum = 0.0;
-        let sums = self.corners().map(|t| {
-            sum += area(t);
-            sum
-        });
-        MeshSampler { mesh: self, sums: sums.collect() }
+    pub fn sampler(&self) -> MeshSampler<&Self> {
+        MeshSampler::new(self)
     }
 
     /// The point that three numbers in [0, 1) choose, uniform over the area, with the unit normal of its triangle;
@@ -156,18 +174,35 @@ impl Mesh {
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MeshSampler<'a> {
-    mesh: &'a Mesh,
+pub struct MeshSampler<M> {
+    mesh: M,
     sums: Vec<f64>,
 }
 
-impl MeshSampler<'_> {
+impl<M: Borrow<Mesh>> MeshSampler<M> {
+    /// A sampler that borrows or owns its mesh.
+    pub fn new(mesh: M) -> Self {
+        let mut sum = 0.0;
+        let running = mesh.borrow().corners().map(|t| {
+            sum += area(t);
+            sum
+        });
+        let sums = running.collect();
+        Self { mesh, sums }
+    }
+
+    /// The mesh that is drawn from.
+    pub fn mesh(&self) -> &Mesh {
+        self.mesh.borrow()
+    }
+
     /// The point that three numbers in [0, 1) choose (the triangle, and a point of it), with the unit normal of its
     /// triangle; `None` when the mesh has no area.
     pub fn sample_at(&self, [which, u, v]: [f64; 3]) -> Option<(Point, Direction)> {
         let at = which * self.sums.last()?;
         let index = self.sums.partition_point(|sum| *sum <= at);
-        let [a, b, c] = self.mesh.corners_of(self.mesh.triangles.get(index)?);
+        let mesh = self.mesh();
+        let [a, b, c] = mesh.corners_of(mesh.triangles.get(index)?);
         let normal = Direction::try_new((b - a).cross(&(c - a)), 0.0)?;
         // the square root makes the strip at distance `1 - root` from `a` as likely as it is long
         let root = u.max(0.0).sqrt();

@@ -15,6 +15,14 @@ pub struct Weighted {
     pub second: f64,
 }
 
+impl Weighted {
+    /// Binary entropy of the weights, `-w ln w - (1 - w) ln (1 - w)`, in [0, ln 2].
+    pub fn entropy(&self) -> f64 {
+        let part = |w: f64| if w > 0.0 { -w * w.ln() } else { 0.0 };
+        part(self.first) + part(self.second)
+    }
+}
+
 /// `(u^p + v^p)^(1/p)` for non-negative `u`, `v` and `p > 0`.
 ///
 /// ```

@@ -3,11 +3,9 @@
 use super::canvas::{Canvas, Corner, SAMPLES};
 use super::image::Image;
 use super::label::{Label, set};
-use super::tessellate::{tessellate, wires};
 use super::view::{View, finite};
 use super::{Colour, mix, text};
-use crate::shape::{Plane, Posed};
-use crate::surface::Surface;
+use crate::shape::Plane;
 use crate::{Point, Pose, Vector};
 
 /// Largest width or height of a picture, in pixels.
@@ -20,7 +18,7 @@ const NEAR: f64 = 0.02;
 #[derive(Clone, Debug)]
 pub struct Picture {
     canvas: Canvas,
-    view: View,
+    pub(super) view: View,
     /// Pixels a unit of x/z, times the samples of a pixel.
     focal: f64,
     labels: Vec<Label>,
@@ -123,42 +121,6 @@ impl Picture {
                 }
                 for [a, b] in [[p, q], [q, r], [r, s], [s, p]] {
                     self.stroke([a, b], edge, 1.0, alpha, 1.0005);
-                }
-            }
-        }
-        self
-    }
-
-    /// A supersurface, shaded, with lines of longitude and latitude; `alpha` in [0, 1].
-    pub fn surface(&mut self, surface: &Posed<Surface>, colour: Colour, alpha: f64) -> &mut Self {
-        let pose = surface.pose();
-        let grid = tessellate(surface.shape());
-        let alpha = level(alpha);
-        let vertices: Vec<(Point, [f64; 3])> = grid
-            .vertices
-            .iter()
-            .map(|(p, n)| (pose * p, self.shade(colour, &(pose.rotation * n.into_inner()), 0.35)))
-            .collect();
-        for (row, next) in vertices.chunks(grid.columns).zip(vertices.chunks(grid.columns).skip(1))
-        {
-            for (ab, dc) in row.windows(2).zip(next.windows(2)) {
-                if let ([a, b], [d, c]) = (ab, dc) {
-                    self.triangle([*a, *b, *c], alpha);
-                    self.triangle([*a, *c, *d], alpha);
-                }
-            }
-        }
-        let eye = Point::from(self.view.pose.translation.vector);
-        let ink = mix(colour, [0; 3], 0.45).map(f64::from);
-        let strong = if alpha == u8::MAX { alpha } else { alpha.max(190) };
-        for line in wires(surface.shape()) {
-            for pair in line.windows(2) {
-                if let [(a, m), (b, n)] = pair {
-                    let (a, b) = (pose * a, pose * b);
-                    let normal = pose.rotation * (m.into_inner() + n.into_inner());
-                    if normal.dot(&(eye - a)) > 0.0 {
-                        self.stroke([&a, &b], ink, 0.9, strong, 1.002);
-                    }
                 }
             }
         }
@@ -280,7 +242,14 @@ impl Picture {
     }
 
     /// A line cut at the near plane; `lift` above 1 brings it nearer than what it lies on.
-    fn stroke(&mut self, ends: [&Point; 2], colour: [f64; 3], width: f64, alpha: u8, lift: f64) {
+    pub(super) fn stroke(
+        &mut self,
+        ends: [&Point; 2],
+        colour: [f64; 3],
+        width: f64,
+        alpha: u8,
+        lift: f64,
+    ) {
         let [mut a, mut b] = ends.map(|p| (self.place(p), colour));
         if !(finite(&a.0) && finite(&b.0)) || a.0.z <= NEAR && b.0.z <= NEAR {
             return;
@@ -361,6 +330,6 @@ fn round_step(width: f64) -> f64 {
 }
 
 /// An opacity as a level, 255 for opaque.
-fn level(alpha: f64) -> u8 {
+pub(super) fn level(alpha: f64) -> u8 {
     (alpha.clamp(0.0, 1.0) * 255.0).round() as u8
 }

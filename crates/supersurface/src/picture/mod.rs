@@ -24,6 +24,7 @@ mod gripper;
 mod image;
 mod label;
 mod relief;
+mod solids;
 mod tessellate;
 mod text;
 mod view;

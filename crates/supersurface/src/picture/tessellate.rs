@@ -1,4 +1,4 @@
-//! Points and normals of a supersurface on a grid of its two angles.
+//! Points and normals of a solid on a grid of its two angles.
 //!
 //! Equal steps of the angle crowd at the edges of a box, equal steps of the polar angle
 //! (`tan θ = tan^ε ω`) leave its edges out: the grid takes both. Lines drawn on a surface take the
@@ -6,9 +6,9 @@
 
 use crate::numeric::powers::signed_power;
 use crate::shape::Parametric;
-use crate::surface::Surface;
+use crate::surface::Solid;
 use crate::{Direction, Point};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 /// A grid of vertices; each row is a line of constant `eta`, and quads lie between them.
 pub(super) struct Grid {
@@ -16,50 +16,59 @@ pub(super) struct Grid {
     pub(super) columns: usize,
 }
 
-/// The vertices of a surface, in its own frame.
-pub(super) fn tessellate(surface: &Surface) -> Grid {
-    let [e1, e2] = surface.exponents();
-    let rows = both(eta_range(surface), e1);
-    let columns = both([-PI, PI], e2);
+/// The vertices of a solid, in its own frame.
+pub(super) fn tessellate(solid: &Solid) -> Grid {
+    let ([etas, omegas], [e1, e2]) = (solid.domain(), exponents(solid));
+    let (rows, columns) = (both(etas, e1), both(omegas, e2));
     let mut vertices = Vec::with_capacity(rows.len() * columns.len());
     for eta in &rows {
         for omega in &columns {
-            vertices.push(vertex(surface, *eta, *omega));
+            vertices.push(vertex(solid, *eta, *omega));
         }
     }
     Grid { vertices, columns: columns.len() }
 }
 
-/// Lines of longitude and latitude, in the surface's own frame.
-pub(super) fn wires(surface: &Surface) -> Vec<Vec<(Point, Direction)>> {
-    let [e1, e2] = surface.exponents();
-    let [low, high] = eta_range(surface);
-    let (rows, columns) = (both([low, high], e1), both([-PI, PI], e2));
+/// Lines of longitude and latitude, in the solid's own frame.
+pub(super) fn wires(solid: &Solid) -> Vec<Vec<(Point, Direction)>> {
+    let ([etas, omegas], [e1, e2]) = (solid.domain(), exponents(solid));
+    let (rows, columns) = (both(etas, e1), both(omegas, e2));
     let mut lines = Vec::new();
-    for omega in polar([-PI, PI], e2, 12).into_iter().skip(1) {
-        lines.push(rows.iter().map(|eta| vertex(surface, *eta, omega)).collect());
+    for omega in polar(omegas, e2, 12).into_iter().skip(1) {
+        lines.push(rows.iter().map(|eta| vertex(solid, *eta, omega)).collect());
     }
-    let steps = if low < -FRAC_PI_2 { 8 } else { 6 };
-    for eta in polar([low, high], e1, steps).into_iter().skip(1) {
-        lines.push(columns.iter().map(|omega| vertex(surface, eta, *omega)).collect());
+    let steps = if etas[0] < -FRAC_PI_2 { 8 } else { 6 };
+    for eta in polar(etas, e1, steps).into_iter().skip(1) {
+        lines.push(columns.iter().map(|omega| vertex(solid, eta, *omega)).collect());
     }
     lines
 }
 
-fn eta_range(surface: &Surface) -> [f64; 2] {
-    match surface {
-        Surface::Superellipsoid(_) => [-FRAC_PI_2, FRAC_PI_2],
-        Surface::Supertoroid(_) => [-PI, PI],
+/// The exponents that say how its angles crowd.
+fn exponents(solid: &Solid) -> [f64; 2] {
+    match solid {
+        Solid::Superellipsoid(s) => s.exponents(),
+        Solid::Supertoroid(s) => s.exponents(),
+        Solid::Tapered(s) => exponents(s.shape()),
+        Solid::Twisted(s) => exponents(s.shape()),
+        Solid::Bent(s) => exponents(s.shape()),
+        Solid::ShearBent(s) => exponents(s.shape()),
+        Solid::Hollowed(s) => exponents(s.shape()),
+        Solid::Separable(s) => {
+            let [k1, k2, k3] = s.powers();
+            [2.0 / k3, 4.0 / (k1 + k2)]
+        }
+        Solid::Supercylinder(s) => [1.0, s.exponent()],
+        Solid::Supercone(s) => [1.0, s.exponent()],
+        Solid::Supershape(_) => [1.0; 2],
     }
 }
 
-fn vertex(surface: &Surface, eta: f64, omega: f64) -> (Point, Direction) {
-    let (point, normal) = match surface {
-        Surface::Superellipsoid(s) => (s.point(eta, omega), s.normal(eta, omega)),
-        Surface::Supertoroid(s) => (s.point(eta, omega), s.normal(eta, omega)),
-    };
+fn vertex(solid: &Solid, eta: f64, omega: f64) -> (Point, Direction) {
+    let point = solid.point(eta, omega);
     let outward = Direction::try_new(point.coords, 1e-300);
-    (point, normal.or(outward).unwrap_or(crate::Vector::z_axis()))
+    let normal = solid.normal(eta, omega).or(outward);
+    (point, normal.unwrap_or(crate::Vector::z_axis()))
 }
 
 /// Angles with equal steps of the polar angle: `ω = atan(tan^(1/ε) θ)`, kept in its quadrant.
@@ -93,7 +102,7 @@ mod tests {
     fn vertices_lie_on_the_surface_with_its_normals() {
         let solid = Superellipsoid::new([0.03, 0.05, 0.08], [0.3, 1.4]).unwrap();
         let ring = Supertoroid::new([0.01, 0.01, 0.02], 3.0, [0.5, 1.0]).unwrap();
-        for surface in [Surface::Superellipsoid(solid), Surface::Supertoroid(ring)] {
+        for surface in [Solid::from(solid), Solid::from(ring)] {
             let grid = tessellate(&surface);
             assert_eq!(grid.vertices.len() % grid.columns, 0);
             for (point, normal) in &grid.vertices {
@@ -106,7 +115,7 @@ mod tests {
     #[test]
     fn the_lines_of_a_box_lie_evenly() {
         let edge = Superellipsoid::new([1.0; 3], [0.1, 0.1]).unwrap();
-        let shape = Surface::Superellipsoid(edge);
+        let shape = Solid::from(edge);
         let lines = wires(&shape);
         // the longitude at 30 degrees of 12
         let at = lines

@@ -151,13 +151,13 @@ pub enum SegmentError {
     #[error("the cloud is empty")]
     EmptyCloud,
     /// None of the points is finite (and within 100,000 km).
-    #[error("none of the cloud's {points} points is a finite reading")]
+    #[error("none of the cloud's {points} points is a finite reading within 100,000 km")]
     NoFinitePoints {
         /// Number of points.
         points: usize,
     },
     /// There are too few readings to say anything.
-    #[error("the cloud has {found} finite points: at least {least} are needed")]
+    #[error("the cloud has {found} finite points within 100,000 km: at least {least} are needed")]
     TooFewPoints {
         /// Number of finite points.
         found: usize,

@@ -2,6 +2,7 @@
 //! shape can answer.
 
 mod angular;
+mod capped;
 #[cfg(test)]
 mod checks;
 mod curvature;

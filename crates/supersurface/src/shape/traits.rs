@@ -70,6 +70,28 @@ pub(crate) fn box_extent([low, high]: &[Point; 2], n: &Vector) -> f64 {
     along(n.x, low.x, high.x) + along(n.y, low.y, high.y) + along(n.z, low.z, high.z)
 }
 
+impl<S: Implicit + ?Sized> Implicit for Box<S> {
+    fn gauge(&self, p: &Point) -> f64 {
+        (**self).gauge(p)
+    }
+
+    fn gradient(&self, p: &Point) -> Vector {
+        (**self).gradient(p)
+    }
+
+    fn bounds(&self) -> [Point; 2] {
+        (**self).bounds()
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        (**self).extent(n)
+    }
+
+    fn is_convex(&self) -> bool {
+        (**self).is_convex()
+    }
+}
+
 /// A gauge with second derivatives.
 pub trait SecondOrder: Implicit {
     /// Second derivatives of the gauge, in 1/m², symmetric; `None` where they do not exist or are infinite.

@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 
 use serde_json::Value;
+use supersurface::combine::rfunction::{difference, intersection, union};
+use supersurface::combine::{Alpha, Blend};
 use supersurface::shape::{
     ExtendedSuperellipsoid, Hyperquadric, HyperquadricForm, Implicit, Parametric, Superformula,
     Supershape,
@@ -105,4 +107,26 @@ fn golden_extended() {
         }
     }
     assert!(cases >= 64, "{cases} cases");
+}
+
+#[test]
+fn golden_rfunctions() {
+    let data = golden("rfunctions");
+    let mut cases = 0;
+    for case in data["cases"].as_array().unwrap() {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let (f1, f2) = (number("f1"), number("f2"));
+        let alpha = Alpha::new(number("alpha")).unwrap();
+        close("union", union(f1, f2, alpha).0, &case["union"], 1e-13);
+        close("intersection", intersection(f1, f2, alpha).0, &case["intersection"], 1e-13);
+        close("difference", difference(f1, f2, alpha).0, &case["difference"], 1e-13);
+        let blend = Blend::new(number("a0"), [number("a1"), number("a2")]).unwrap();
+        let (added, _) = blend.displacement(f1, f2);
+        let smooth = Alpha::SMOOTH;
+        close("blend ∪", union(f1, f2, smooth).0 + added, &case["blend_union"], 1e-13);
+        let both = intersection(f1, f2, smooth).0 + added;
+        close("blend ∩", both, &case["blend_intersection"], 1e-13);
+        cases += 1;
+    }
+    assert!(cases >= 40, "{cases} cases");
 }

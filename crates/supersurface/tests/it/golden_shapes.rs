@@ -170,6 +170,14 @@ fn golden_distance() {
         let (s, p) = (toroid(case), point(&case["p"]));
         let largest = s.semi_axes().into_iter().fold(0.0, f64::max) * (1.0 + s.ring_ratio());
         close("meridian", s.meridian_distance(&p), &case["meridian"], 1e-12 * largest);
+        let foot = s.meridian_foot(&p).unwrap();
+        close("omega_pi", foot.polar_angle, &case["omega_pi"], 1e-14);
+        close("omega_s", foot.omega, &case["omega_s"], 1e-9);
+        close("a_ws", foot.semi_axis, &case["a_ws"], 1e-12 * foot.semi_axis);
+        close("beta1", foot.tube_scale, &case["beta1"], 1e-12 * foot.tube_scale);
+        close("beta2", foot.mean_scale, &case["beta2"], 1e-12 * foot.mean_scale);
+        close_vector("R_pi", &foot.mean_point.coords, &case["R_pi"], 1e-12);
+        close_vector("p_s", &foot.foot.coords, &case["p_s"], 1e-12);
         if let Some(first) =
             s.implicit_gradient(&p).and_then(|g| first_order(s.log_implicit_value(&p).exp_m1(), &g))
         {

@@ -1,15 +1,18 @@
 //! Integration tests of the library, one binary.
 
+mod assembly;
 mod closest;
 mod conformance;
 mod floors;
 mod golden_antipodal;
 mod golden_deform;
 mod golden_general;
+mod golden_jacobian;
 mod golden_members;
 mod golden_sampling;
 mod golden_shapes;
 mod hit;
+mod mesh;
 mod picture;
 mod pipeline;
 mod scene;

@@ -47,10 +47,11 @@ pub(super) struct Minimum {
     pub(super) squared: f64,
 }
 
-/// Most steps, the largest of one coordinate, and how far one may be stretched.
+/// Most stepsand the largest of one coordinate.
 const STEPS: usize = 150;
 const LONGEST: f64 = 3.0;
-const FARTHEST: f64 = 8.0;
+/// Steps after which Newton's method is taken to creep along a tail.
+const PATIENCE: usize = 8;
 /// Beyond this a coordinate is on its seam: what is left is under 1e-17 of the semi-axis.
 const SEAM: f64 = 40.0;
 
@@ -77,9 +78,16 @@ impl Chart {
         let mut place = start;
         let mut now = self.expand(place, p);
         let mut damping = 0.0;
-        // towards a seam the distance falls exponentially and Newton's steps are too short by a constant factor
-        let (mut stretch, mut last) = (1.0, [0.0; 2]);
-        for _ in 0..STEPS {
+        for count in 0..STEPS {
+            if count >= PATIENCE
+                && let Some(next) = self.balanced(place, &now)
+            {
+                let trial = self.expand(next, p);
+                if trial.squared < now.squared {
+                    (place, now) = (next, trial);
+                    continue;
+                }
+            }
             let [gt, gu] = now.gradient;
             let step = newton_step(now.gradient, now.hessian, damping);
             let expected = -(gt * step[0] + gu * step[1]);
@@ -87,18 +95,11 @@ impl Chart {
             if expected <= 1e-17 * now.squared.max(1e-300) || !expected.is_finite() {
                 break;
             }
-            let onward = step[0] * last[0] + step[1] * last[1] > 0.0;
-            stretch = if onward { f64::min(1.5 * stretch, FARTHEST) } else { 1.0 };
-            let next: [f64; 2] = std::array::from_fn(|k| place[k] + stretch * step[k]);
+            let next: [f64; 2] = std::array::from_fn(|k| place[k] + step[k]);
             let trial = self.expand(next, p);
             if trial.squared <= now.squared {
-                (place, now, last) = (next, trial, step);
+                (place, now) = (next, trial);
                 damping *= 0.1;
-                if place.iter().all(|v| v.abs() > SEAM) {
-                    break;
-                }
-            } else if stretch > 1.0 {
-                last = [0.0; 2];
             } else {
                 let [[tt, _], [_, uu]] = now.hessian;
                 damping = (damping * 8.0).max(1e-3 * (tt.abs() + uu.abs()));
@@ -108,6 +109,43 @@ impl Chart {
             }
         }
         Minimum { place, point: now.point, squared: now.squared }
+    }
+
+    /// The place to which Newton's method leads for the logarithms of the conditions of a minimum,
+    /// `(p2-1) t = ln (a2 e_y)/(a1 e_x)` and `(p1-1) u = ln (a3 e_z)/e_ρ` with the offset `e` of the surface point: next to
+    /// a seam the distance falls exponentially, and these are nearly linear. A coordinate whose two forces do not
+    /// balance anywhere near goes on to the seam.
+    fn balanced(&self, [t, u]: [f64; 2], now: &Expansion) -> Option<[f64; 2]> {
+        let [p1, p2] = self.powers;
+        let (e, [x, y, z], r) = (now.offset, [now.x, now.y, now.z], now.r);
+        let across = x[0] * e.x + y[0] * e.y;
+        let across_t = x[1] * e.x + y[1] * e.y + r[0] * (x[0] * x[1] + y[0] * y[1]);
+        let across_u = r[1] * (x[0] * x[0] + y[0] * y[0]);
+        let [a1, a2, a3] = self.semi_axes;
+        let ft = (p2 - 1.0) * t + (a1 * e.x / (a2 * e.y)).ln();
+        let fu = (p1 - 1.0) * u + (self.side * across / (a3 * e.z)).ln();
+        let tt = (p2 - 1.0) + r[0] * (x[1] / e.x - y[1] / e.y);
+        let tu = r[1] * (x[0] / e.x - y[0] / e.y);
+        let ut = across_t / across;
+        let uu = (p1 - 1.0) + across_u / across - z[1] / e.z;
+        let onward = |v: f64, g: f64| v - LONGEST.copysign(g);
+        let [gt, gu] = now.gradient;
+        let (t_balances, u_balances) = (ft.is_finite(), fu.is_finite());
+        let step = match (t_balances, u_balances) {
+            (true, true) => {
+                let det = tt * uu - tu * ut;
+                [t + (tu * fu - uu * ft) / det, u + (ut * ft - tt * fu) / det]
+            }
+            (true, false) => [t - ft / tt, onward(u, gu)],
+            (false, true) => [onward(t, gt), u - fu / uu],
+            (false, false) => [onward(t, gt), onward(u, gu)],
+        };
+        let place = step.map(|v| v.clamp(-SEAM, SEAM));
+        let place = [
+            if t.is_infinite() { t } else { place[0] },
+            if u.is_infinite() { u } else { place[1] },
+        ];
+        place.iter().all(|v| !v.is_nan()).then_some(place)
     }
 
     /// The squared distance at a place with half its derivatives.
@@ -127,6 +165,11 @@ impl Chart {
         let uu = by_u.norm_squared() + r[2] * (e.x * x[0] + e.y * y[0]) + e.z * z[2];
         Expansion {
             point,
+            offset: e,
+            r,
+            x,
+            y,
+            z,
             squared: e.norm_squared(),
             gradient: [e.dot(&by_t), e.dot(&by_u)],
             hessian: [[tt, tu], [tu, uu]],
@@ -136,6 +179,12 @@ impl Chart {
 
 struct Expansion {
     point: Vector,
+    /// From the point to the surface point.
+    offset: Vector,
+    r: [f64; 3],
+    x: [f64; 3],
+    y: [f64; 3],
+    z: [f64; 3],
     squared: f64,
     gradient: [f64; 2],
     hessian: [[f64; 2]; 2],

@@ -117,7 +117,7 @@ impl Bounds {
 }
 
 /// The up to eight cells around a cell.
-pub(super) fn neighbours(cell: usize) -> impl Iterator<Item = usize> {
+fn neighbours(cell: usize) -> impl Iterator<Item = usize> {
     let (i, j) = ((cell / CELLS) as isize, (cell % CELLS) as isize);
     let steps = (-1..=1).flat_map(|a| (-1..=1).map(move |b| (a, b))).filter(|s| *s != (0, 0));
     let side = CELLS as isize;

@@ -13,7 +13,7 @@ mod chart;
 mod grid;
 
 use self::chart::{Chart, Minimum};
-use self::grid::{Grid, neighbours};
+use self::grid::Grid;
 use crate::shape::{Implicit, Superellipsoid, Supertoroid};
 use crate::{Point, Vector};
 
@@ -139,8 +139,7 @@ fn search(chart: &Chart, grid: &Grid, p: &Vector, best: &mut Option<Minimum>) {
     }
     // a cell that could be nearer and that no search has come by
     for cell in 0..bounds.least.len() {
-        let near = |c: &usize| *c == cell || neighbours(cell).any(|n| n == *c);
-        if worth(bounds.least[cell], best) && !followed.iter().any(near) {
+        if worth(bounds.least[cell], best) && !followed.contains(&cell) {
             follow(grid.place(cell), best, &mut followed);
             followed.push(cell);
         }

@@ -12,7 +12,7 @@
 //! `R exp([δ]×)`.
 
 use super::Superellipsoid;
-use crate::numeric::superellipse::{Weighted, weighted};
+use crate::numeric::superellipse::weighted;
 use crate::shape::{Implicit, Posed};
 use crate::{Point, Vector};
 
@@ -75,8 +75,8 @@ impl Posed<Superellipsoid> {
         for (i, a) in [a1, a2, a3].into_iter().enumerate() {
             row[i] = -scale * weights[i] / a;
         }
-        row[3] = 0.5 * scale * entropy(&whole);
-        row[4] = 0.5 * scale * whole.first * entropy(&planar);
+        row[3] = 0.5 * scale * whole.entropy();
+        row[4] = 0.5 * scale * whole.first * planar.entropy();
         let by_position = -(self.pose().rotation * by_q);
         let by_rotation = by_q.cross(&q);
         for i in 0..3 {
@@ -85,10 +85,4 @@ impl Posed<Superellipsoid> {
         }
         (length * (1.0 - 1.0 / g), row)
     }
-}
-
-/// Binary entropy `-w ln w - (1 - w) ln (1 - w)` of a pair of weights, 0 at its ends.
-fn entropy(w: &Weighted) -> f64 {
-    let part = |w: f64| if w > 0.0 { -w * w.ln() } else { 0.0 };
-    part(w.first) + part(w.second)
 }

@@ -13,6 +13,8 @@ mod meridian;
 mod parametric;
 mod support;
 
+pub use meridian::{MeridianFoot, PARAMETERS};
+
 use super::superellipsoid::{check_axes, check_exponents};
 use crate::shape::InvalidShape;
 

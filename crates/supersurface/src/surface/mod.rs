@@ -1,4 +1,9 @@
-//! Floor 5: the closed family of supersurfaces as one type, for files, programs and the pipeline.
+//! Floor 5: the family as one type, for files, programs and the pipeline: [`Surface`] is what the pipeline recovers,
+//! [`Solid`] any closed member, deformed or not.
+
+mod solid;
+
+pub use solid::Solid;
 
 use crate::shape::{Implicit, Superellipsoid, Supertoroid, SupportMap};
 use crate::{Point, Vector};

@@ -1,0 +1,225 @@
+//! `supersurface info`: what a shape is, where it reaches, how heavy it is.
+
+use std::fmt::Write;
+
+use clap::Args;
+use serde_json::{Value, json};
+use supersurface::nalgebra::Matrix3;
+use supersurface::shape::{Implicit, Mass, MassProperties};
+use supersurface::{Point, Pose, Vector};
+use supersurface_io::Model;
+
+use super::args::ShapeArgs;
+use super::meshed::{Fineness, Meshed, meshed};
+use crate::exit::{Failure, print};
+
+/// Cells along the longest side of what is marched.
+const CELLS: usize = 96;
+
+/// Which shape, of what.
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    #[command(flatten)]
+    which: ShapeArgs,
+    /// Density in kg/m³.
+    #[arg(long, value_name = "RHO", default_value_t = 1000.0)]
+    density: f64,
+    /// Print as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is told of a shape; `None` is what it does not have.
+struct Facts {
+    name: String,
+    bounds: Option<[Point; 2]>,
+    convex: Option<bool>,
+    mass: Option<Weighed>,
+    notes: Vec<(&'static str, String)>,
+}
+
+/// Mass properties and how they came about.
+struct Weighed {
+    mass: Mass,
+    /// Estimated relative error of the volume.
+    error: f64,
+    how: &'static str,
+}
+
+/// Prints the facts.
+pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    if !(args.density > 0.0 && args.density.is_finite()) {
+        let given = args.density;
+        return Err(Failure::usage(format!("--density: {given} is not positive and finite")));
+    }
+    let facts = facts(&args.which.name(), &args.which.model()?, args.density)?;
+    print(&if args.json { as_json(&facts, args.density) } else { as_text(&facts, args.density) })
+}
+
+fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
+    let mut notes = Vec::new();
+    let (kind, bounds, convex, exact) = match model {
+        Model::Solid(solid) => {
+            let exact = solid.shape().as_mass_properties();
+            let exact = exact.map(|m| m.mass_properties(density).moved(solid.pose()));
+            (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), exact)
+        }
+        Model::Implicit(kind, solid) => {
+            ((*kind).to_owned(), Some(solid.bounds()), Some(solid.is_convex()), None)
+        }
+        Model::Extended(_) => ("extended superellipsoid".into(), None, None, None),
+        Model::Combined(solid) => {
+            notes.push(("solids", solid.leaves().to_string()));
+            ("combination".into(), Some(solid.bounds()), Some(solid.is_convex()), None)
+        }
+        Model::Quadric(quadric) => {
+            let form = quadric.normal_form();
+            notes.push(("type", format!("{:?}", form.kind)));
+            ("quadric".into(), quadric.as_ellipsoid().map(|e| e.bounds()), None, None)
+        }
+        Model::Assembly(assembly) => {
+            notes.push(("parts", assembly.parts().len().to_string()));
+            notes.push(("joints", assembly.joints().len().to_string()));
+            let bodies = assembly.bodies(&assembly.rest_rotations());
+            let boxes = bodies.iter().map(Implicit::bounds);
+            let bounds = boxes.reduce(|[a, b], [c, d]| [a.inf(&c), b.sup(&d)]);
+            ("assembly".into(), bounds, None, None)
+        }
+    };
+    let bounded = bounds.is_none_or(|b| b.iter().all(|p| p.iter().all(|v| v.is_finite())));
+    let mass = match (exact, model) {
+        (Some(mass), _) => Some(Weighed { mass, error: 0.0, how: "closed form" }),
+        (None, Model::Assembly(assembly)) => {
+            let mut sum: Option<Weighed> = None;
+            let poses = assembly.poses(&assembly.rest_rotations());
+            for (part, pose) in assembly.parts().iter().zip(poses) {
+                let own = Model::Solid(part.body().moved(&part.body().pose().inverse()));
+                let own = facts(name, &own, part.density())?.mass;
+                sum = joined(sum, own, &pose);
+            }
+            sum
+        }
+        (None, Model::Quadric(quadric)) => match quadric.as_ellipsoid() {
+            Some(e) => {
+                let mass = e.shape().mass_properties(density).moved(e.pose());
+                Some(Weighed { mass, error: 0.0, how: "closed form" })
+            }
+            None => None,
+        },
+        (None, _) if bounded => Some(of_meshes(name, model, density)?),
+        (None, _) => None,
+    };
+    Ok(Facts { name: kind, bounds, convex, mass, notes })
+}
+
+/// Two weighed parts as one; the second stands at a pose.
+fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<Weighed> {
+    let part = part?;
+    let moved = part.mass.moved(pose);
+    Some(match sum {
+        None => Weighed { mass: moved, ..part },
+        Some(sum) => Weighed {
+            mass: sum.mass.joined(&moved),
+            error: sum.error.max(part.error),
+            how: if sum.how == part.how { part.how } else { "partly of a mesh" },
+        },
+    })
+}
+
+/// Of a fine mesh, with what a coarser one differs by as the error.
+fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Weighed, Failure> {
+    let coarse = meshed(name, model, Fineness { tolerance: None, cells: CELLS / 2 })?;
+    let finer = coarse.distance.filter(|d| *d > 0.0).map(|d| d / 4.0);
+    let fine = Fineness { tolerance: finer, cells: CELLS };
+    // where a finer mesh is too fine the coarse one has to do
+    let fine = meshed(name, model, fine).unwrap_or(Meshed { mesh: coarse.mesh.clone(), ..coarse });
+    let mass = fine.mesh.mass_properties(density);
+    let error = (coarse.mesh.volume() * density / mass.mass - 1.0).abs();
+    Ok(Weighed { mass, error, how: "of a mesh" })
+}
+
+fn as_text(facts: &Facts, density: f64) -> String {
+    let mut out = format!("{}\n", facts.name);
+    let mut line = |what: &str, value: String| {
+        // writing to a string does not fail
+        let _ = writeln!(out, "  {what:<18} {value}");
+    };
+    for (what, value) in &facts.notes {
+        line(what, value.clone());
+    }
+    match facts.bounds {
+        Some([low, high]) if (high - low).iter().all(|v| v.is_finite()) => {
+            let size = high - low;
+            line("size", format!("{} x {} x {} m", short(size.x), short(size.y), short(size.z)));
+            line("from", row(&low.coords));
+            line("to", row(&high.coords));
+        }
+        Some(_) => line("size", "without end".into()),
+        None => {}
+    }
+    if let Some(convex) = facts.convex {
+        line("convex", if convex { "yes".into() } else { "not known to be".into() });
+    }
+    if let Some(Weighed { mass, error, how }) = &facts.mass {
+        line("volume", format!("{:.6e} m³ ({how}{})", mass.mass / density, about(*error)));
+        line("mass", format!("{} kg", short(mass.mass)));
+        line("centre of mass", row(&mass.centre.coords));
+        let moments = principal(&mass.inertia);
+        line("principal moments", format!("{} kg m²", row(&moments)));
+    }
+    out
+}
+
+fn as_json(facts: &Facts, density: f64) -> String {
+    let point = |p: &Point| json!(finite(&p.coords));
+    let mut value = json!({
+        "name": facts.name,
+        "bounds": facts.bounds.map(|[low, high]| json!({"low": point(&low), "high": point(&high)})),
+        "convex": facts.convex,
+        "mass": facts.mass.as_ref().map(|w| json!({
+            "density": density,
+            "volume": w.mass.mass / density,
+            "mass": w.mass.mass,
+            "centre": point(&w.mass.centre),
+            "inertia": (0..3).map(|i| finite(&w.mass.inertia.column(i).into_owned())).collect::<Vec<_>>(),
+            "relative_error": w.error,
+            "method": w.how,
+        })),
+    });
+    for (what, note) in &facts.notes {
+        value[*what] = json!(note);
+    }
+    format!("{value:#}\n")
+}
+
+/// Numbers of a vector, null where there is none.
+fn finite(v: &Vector) -> Vec<Value> {
+    v.iter().map(|x| if x.is_finite() { json!(x) } else { Value::Null }).collect()
+}
+
+/// Principal moments, least first, in one vector.
+fn principal(inertia: &Matrix3<f64>) -> Vector {
+    let mut values: Vec<f64> = inertia.symmetric_eigenvalues().iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    Vector::from_column_slice(&values)
+}
+
+fn about(error: f64) -> String {
+    if error > 0.0 { format!(", about {:.1e} off", error) } else { String::new() }
+}
+
+fn row(v: &Vector) -> String {
+    format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
+}
+
+/// Five significant digits.
+fn short(v: f64) -> String {
+    match v.abs() {
+        0.0 => "0".into(),
+        1e-3..1e5 => {
+            let digits = 4 - v.abs().log10().floor() as i32;
+            format!("{v:.*}", digits.max(0) as usize)
+        }
+        _ => format!("{v:.4e}"),
+    }
+}
