@@ -6,15 +6,19 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
+use super::simplex::lowest;
 use crate::measure::implicit_curvature::tangents;
 use crate::shape::Implicit;
 use crate::{Direction, Point, Vector};
+
+/// [`SecondOrder::hessian`](crate::shape::SecondOrder::hessian) of a shape that has it.
+pub(super) type Hessian<S> = fn(&S, &Point) -> Option<Matrix3<f64>>;
 
 /// A gauge with the second derivatives that are known of it.
 #[derive(Debug)]
 pub(super) struct Surface<'a, S> {
     pub(super) shape: &'a S,
-    pub(super) hessian: Option<fn(&S, &Point) -> Option<Matrix3<f64>>>,
+    pub(super) hessian: Option<Hessian<S>>,
 }
 
 /// A point of the surface and what it promises.
@@ -78,6 +82,20 @@ impl<S: Implicit> Surface<'_, S> {
         Some(now)
     }
 
+    /// A point nearer than `start`, which may lie on an edge: places on the plane that faces `p` there, each taken back
+    /// to the surface.
+    pub(super) fn narrow(&self, start: &Point, p: &Point) -> Option<Foot> {
+        let away = p - start;
+        let distance = away.norm();
+        let [u, v] = tangents(&Direction::try_new(away, 1e-300)?);
+        let place = |at: &Vector2<f64>| start + (u * at.x + v * at.y) * distance;
+        let length = |at: [f64; 2]| {
+            self.land(&place(&at.into()), p).map_or(f64::INFINITY, |foot| foot.squared)
+        };
+        let (_, at) = lowest(length, [0.0; 2], 0.03, 1e-12);
+        self.land(&place(&at.into()), p)
+    }
+
     /// The surface point that is reached along the gradient; `None` where there is none near.
     pub(super) fn land(&self, start: &Point, p: &Point) -> Option<Foot> {
         let mut point = *start;
@@ -91,8 +109,7 @@ impl<S: Implicit> Surface<'_, S> {
             let unit = gradient / largest;
             let moved = point - unit * (excess / largest / unit.norm_squared());
             let next = self.shape.gauge(&moved) - 1.0;
-            // negated: also where it is NaN
-            if !(next.abs() < excess.abs()) {
+            if next.is_nan() || next.abs() >= excess.abs() {
                 break;
             }
             (point, excess) = (moved, next);
