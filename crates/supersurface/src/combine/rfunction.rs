@@ -135,6 +135,8 @@ mod tests {
     use super::*;
     use crate::numeric::random::Stream;
 
+    type Operation = fn(f64, f64, Alpha) -> (f64, [f64; 2]);
+
     #[test]
     fn signs_are_boolean_and_slopes_agree_with_differences() {
         let mut random = Stream::new(9, 0);
@@ -142,7 +144,7 @@ mod tests {
             for _ in 0..2000 {
                 let (f, g) = (random.between(-1.0, 1.0), random.between(-1.0, 1.0));
                 let h = 1e-7;
-                let operations: [(fn(f64, f64, Alpha) -> (f64, [f64; 2]), bool); 3] = [
+                let operations: [(Operation, bool); 3] = [
                     (intersection, f > 0.0 && g > 0.0),
                     (union, f > 0.0 || g > 0.0),
                     (difference, f > 0.0 && g <= 0.0),
