@@ -116,7 +116,7 @@ fn wrong_use_is_told_with_its_status() {
         (&["info", "--superellipsoid", TIN, "--density", "0"], 2, "--density"),
         (&["mesh", "--superellipsoid", TIN, "-o", "tin.xyz"], 5, ".stl"),
         (&["mesh", bowl, "-o", path], 3, "intersection"),
-        (&["mesh", "--superellipsoid", TIN, "-o", path, "--tolerance", "-1"], 2, "tolerance"),
+        (&["mesh", "--superellipsoid", TIN, "-o", path, "--tolerance", "0"], 2, "tolerance"),
         (&["sample", "--superellipsoid", TIN, "-o", path], 5, ".ply"),
         (&["sample", "--superellipsoid", TIN, "-o", path, "--spread", "angle"], 2, "--distance"),
     ];

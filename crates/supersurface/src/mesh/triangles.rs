@@ -139,12 +139,6 @@ impl Mesh {
             && self.edges().values().all(|runs| *runs == [1, 1])
     }
 
-    /// True when every edge is run along as often one way as the other: there is an inside and an outside, though an
-    /// edge may have four triangles.
-    pub fn is_closed(&self) -> bool {
-        !self.triangles.is_empty() && self.edges().values().all(|[up, down]| up == down)
-    }
-
     /// How often each edge is run along upwards and downwards, by (lower, higher) vertex.
     fn edges(&self) -> HashMap<(u32, u32), [u32; 2]> {
         let mut edges = HashMap::with_capacity(self.triangles.len() * 3 / 2);
