@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use super::Mesh;
 use super::chords::{cuts, distance_to_triangle, quarters, sagitta};
 use crate::Point;
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::Parametric;
 
 /// Cells beyond which a tolerance is given up.
@@ -16,9 +17,11 @@ const MOST_CELLS: usize = 4_000_000;
 /// Chords of the mesh on which a tolerance is chosen, as a share of the size: no less.
 const COARSEST: f64 = 1e-4;
 
-/// Angles at which a surface is cut into cells.
+/// Angles at which a surface is cut into cells, by the parameters of [`QuarterAngle`]: faces of boxes are fine there.
 pub(super) struct Grid<'a, S: ?Sized> {
     surface: &'a S,
+    /// Ranges of the parameters of both angles.
+    domain: [[f64; 2]; 2],
     /// The largest difference of a coordinate, in metres.
     pub(super) size: f64,
     /// Whether the first and the last row are a point each.
@@ -45,9 +48,10 @@ pub(super) struct Further {
 impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
     /// A first grid, if the surface is finite and of some size.
     pub(super) fn new(surface: &'a S) -> Option<Self> {
-        let [rows, columns] = surface.domain().map(even);
+        let domain = surface.domain().map(|range| range.map(QuarterAngle::parameter));
+        let [rows, columns] = domain.map(even);
         let points: Vec<Vec<Point>> =
-            rows.iter().map(|e| columns.iter().map(|o| surface.point(*e, *o)).collect()).collect();
+            rows.iter().map(|e| columns.iter().map(|o| at(surface, *e, *o)).collect()).collect();
         let (first, last) = (points.first()?, points.last()?);
         let centre = first.first()?;
         let size = points.iter().flatten().map(|p| (p - centre).amax()).fold(0.0, f64::max);
@@ -63,7 +67,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
         ];
         // a ring whose hole has closed to a point is still a ring
         let poles = [first, last].map(|row| !joined[0] && pole(row));
-        Some(Self { surface, size, poles, joined, rows, columns })
+        Some(Self { surface, domain, size, poles, joined, rows, columns })
     }
 
     /// True when the surface has no border.
@@ -73,18 +77,18 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
 
     fn parallel(&self, eta: f64) -> impl Fn(f64) -> Point + use<'a, S> {
         let surface = self.surface;
-        move |omega| surface.point(eta, omega)
+        move |omega| at(surface, eta, omega)
     }
 
     fn meridian(&self, omega: f64) -> impl Fn(f64) -> Point + use<'a, S> {
         let surface = self.surface;
-        move |eta| surface.point(eta, omega)
+        move |eta| at(surface, eta, omega)
     }
 
     /// Chooses columns and rows by the chords of some parallels and meridians, which stay within these distances of
     /// their arcs: those of meridians first.
     pub(super) fn cut(&mut self, [along, around]: [f64; 2]) {
-        let [eta, omega] = self.surface.domain();
+        let [eta, omega] = self.domain;
         let parallels: Vec<_> = probes(eta, &self.rows).map(|t| self.parallel(t)).collect();
         self.columns = cuts(&parallels, omega, around);
         let meridians: Vec<_> = probes(omega, &self.columns).map(|t| self.meridian(t)).collect();
@@ -137,7 +141,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
 
     /// The spans of rows and of columns; the inner angles quarter the longest of some chords.
     fn spans(&self) -> [Vec<Span>; 2] {
-        let [eta, omega] = self.surface.domain();
+        let [eta, omega] = self.domain;
         let meridians: Vec<_> = even(omega).into_iter().map(|t| self.meridian(t)).collect();
         let parallels: Vec<_> = even(eta).into_iter().map(|t| self.parallel(t)).collect();
         [spans(&self.rows, &meridians), spans(&self.columns, &parallels)]
@@ -187,7 +191,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
                 let known = twin.and_then(|at| numbers.get(at).copied());
                 numbers.push(known.unwrap_or(vertices.len() as u32));
                 if known.is_none() {
-                    vertices.push(self.surface.point(*eta, *omega));
+                    vertices.push(at(self.surface, *eta, *omega));
                 }
             }
         }
@@ -221,7 +225,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
     ) -> ([[u32; 3]; 2], f64) {
         let ([e0, e1, e2], [o0, o1, o2]) = (row.inner, column.inner);
         let points = [(e1, o1), (e0, o0), (e0, o2), (e2, o0), (e2, o2)]
-            .map(|(eta, omega)| self.surface.point(eta, omega));
+            .map(|(eta, omega)| at(self.surface, eta, omega));
         let vertex = |k: u32| vertices.get(k as usize).copied().unwrap_or_default();
         let judged = |triangles: [[u32; 3]; 2]| {
             let [one, other] = triangles.map(|t| t.map(vertex));
@@ -264,6 +268,12 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
         }
         self.rows.len() + self.columns.len() > before
     }
+}
+
+/// The point at two parameters.
+fn at<S: Parametric + ?Sized>(surface: &S, eta: f64, omega: f64) -> Point {
+    let [eta, omega] = [eta, omega].map(QuarterAngle::from_parameter);
+    surface.point_at(eta, omega)
 }
 
 /// Angles that part a range evenly, with the seams of a closed surface among them.

@@ -2,11 +2,8 @@
 //!
 //! What holds: vertices lie on the surface, triangles face outwards, the mesh is closed, and at five points of every
 //! cell of angles the distance is within the tolerance. What is not guaranteed: the distance between these points
-//! (within the tolerance in all tests, at 10⁴ random points of each mesh), that triangles are well shaped (near poles
-//! and sharp edges they are thin), and what angles cannot tell apart: multiples of π/2 are the angles within 1e-15 of
-//! them, so that a face is seen only from `(1e-15)^ε` of its half-width away from its middle, 3 % for ε = 0.1 and less
-//! than a thousandth from ε = 0.2. It is flat there, but where a deformation curves it (the dish in the lid of a tin
-//! with ε = 0.1) the mesh can be a few tolerances away.
+//! (within the tolerance in all tests, at 10⁴ random points of each mesh), and that triangles are well shaped (near poles
+//! and sharp edges they are thin).
 
 use super::Mesh;
 use super::angle_grid::Grid;

@@ -3,6 +3,7 @@
 pub mod dirichlet;
 pub mod lanes;
 pub mod powers;
+pub mod quarter_angle;
 pub mod random;
 pub mod spline;
 pub mod superellipse;

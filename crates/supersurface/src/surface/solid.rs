@@ -3,6 +3,7 @@
 //! Deformations nest: a deformed solid is a solid again.
 
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
     Implicit, InvalidShape, MassProperties, Parametric, SecondOrder, SeparableSuperquadric,
     Supercone, Supercylinder, Superellipsoid, Supershape, Supertoroid, SupportMap,
@@ -223,6 +224,10 @@ impl Parametric for Solid {
 
     fn point(&self, eta: f64, omega: f64) -> Point {
         self.parametric().point(eta, omega)
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.parametric().point_at(eta, omega)
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
