@@ -134,7 +134,7 @@ fn faults_name_the_file_and_the_place() {
             with(r#""deformations": [{"type": "twist", "turns": 1}, {"type": "cavity", "depth": 1}]"#),
             "before any other",
         ),
-        (format!(r#"{{"type": "union", "of": []}}"#), "shape.of"),
+        (r#"{"type": "union", "of": []}"#.to_owned(), "shape.of"),
         (format!(r#"{{"type": "union", "of": [{ball}, {{"type": "blob"}}]}}"#), "shape.of[1]"),
         (format!(r#"{{"type": "union", "of": [{ball}], "alpha": -1}}"#), "alpha"),
         (
