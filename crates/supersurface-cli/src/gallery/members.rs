@@ -82,7 +82,10 @@ fn others() -> Result<Vec<(&'static str, Mesh)>, Failure> {
             ),
             ("hyperquadric, 4 terms", marched(Hyperquadric::new(&planes, &[4.0, 4.0, 6.0, 8.0])?)),
             ("extended superellipsoid (23)", Member::Extended(extended.clone())),
-            ("the same, radially", marched(extended.radial())),
+            (
+                "the same, radially",
+                Member::Solid(Solid::RadialExtended(Box::new(extended.radial()))),
+            ),
             ("superparaboloid, cut", cut(Superparaboloid::new(a, [0.7, 0.6])?)?),
             ("one sheet, cut", cut(SuperhyperboloidOneSheet::new(a, e)?)?),
             ("two sheets, cut", cut(SuperhyperboloidTwoSheets::new(a, e)?)?),

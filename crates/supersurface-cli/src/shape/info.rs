@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
+use supersurface::mesh::{mass_of_solid, mass_of_surface};
 use supersurface::nalgebra::Matrix3;
 use supersurface::shape::{Implicit, Mass, MassProperties};
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::Model;
 
 use super::args::ShapeArgs;
-use super::meshed::{Fineness, Meshed, meshed};
 use crate::exit::{Failure, print};
 
 /// Cells along the longest side of what is marched.
@@ -41,7 +41,7 @@ struct Facts {
 /// Mass properties and how they came about.
 struct Weighed {
     mass: Mass,
-    /// Estimated relative error of the volume.
+    /// Estimated relative error.
     error: f64,
     how: &'static str,
 }
@@ -106,7 +106,7 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
             }
             None => None,
         },
-        (None, _) if bounded => Some(of_meshes(name, model, density)?),
+        (None, _) if bounded => of_meshes(name, model, density)?,
         (None, _) => None,
     };
     Ok(Facts { name: kind, bounds, convex, mass, notes })
@@ -121,21 +121,22 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
         Some(sum) => Weighed {
             mass: sum.mass.joined(&moved),
             error: sum.error.max(part.error),
-            how: if sum.how == part.how { part.how } else { "partly of a mesh" },
+            how: if sum.how == part.how { part.how } else { "partly of meshes" },
         },
     })
 }
 
-/// Of a fine mesh, with what a coarser one differs by as the error.
-fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Weighed, Failure> {
-    let coarse = meshed(name, model, Fineness { tolerance: None, cells: CELLS / 2 })?;
-    let finer = coarse.distance.filter(|d| *d > 0.0).map(|d| d / 4.0);
-    let fine = Fineness { tolerance: finer, cells: CELLS };
-    // where a finer mesh is too fine the coarse one has to do
-    let fine = meshed(name, model, fine).unwrap_or(Meshed { mesh: coarse.mesh.clone(), ..coarse });
-    let mass = fine.mesh.mass_properties(density);
-    let error = (coarse.mesh.volume() * density / mass.mass - 1.0).abs();
-    Ok(Weighed { mass, error, how: "of a mesh" })
+/// Of two meshes.
+fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Option<Weighed>, Failure> {
+    let told = |e: &dyn std::fmt::Display| Failure::input(format!("{name}: {e}"));
+    let found = match model {
+        Model::Solid(s) => mass_of_surface(s, density, None).map_err(|e| told(&e))?,
+        Model::Extended(s) => mass_of_surface(s, density, None).map_err(|e| told(&e))?,
+        Model::Implicit(_, s) => mass_of_solid(s, density, CELLS).map_err(|e| told(&e))?,
+        Model::Combined(s) => mass_of_solid(s, density, CELLS).map_err(|e| told(&e))?,
+        Model::Quadric(_) | Model::Assembly(_) => return Ok(None),
+    };
+    Ok(Some(Weighed { mass: found.mass, error: found.error, how: "of meshes" }))
 }
 
 fn as_text(facts: &Facts, density: f64) -> String {
@@ -205,7 +206,7 @@ fn principal(inertia: &Matrix3<f64>) -> Vector {
 }
 
 fn about(error: f64) -> String {
-    if error > 0.0 { format!(", about {:.1e} off", error) } else { String::new() }
+    if error > 0.0 { format!(", less than {error:.1e} off") } else { String::new() }
 }
 
 fn row(v: &Vector) -> String {

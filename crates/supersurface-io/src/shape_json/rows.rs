@@ -107,7 +107,8 @@ impl ShapeRow {
                 Leaf::Extended(extended(semi_axes, &profile, &section)?)
             }
             Self::RadialExtended { semi_axes, profile, section } => {
-                Leaf::Implicit(Box::new(extended(semi_axes, &profile, &section)?.radial()))
+                let shape = extended(semi_axes, &profile, &section)?.radial();
+                Leaf::Solid(Solid::RadialExtended(Box::new(shape)))
             }
             Self::Quadric { coefficients } => Leaf::Quadric(Quadric::new(coefficients)?),
             Self::Union(tree) | Self::Intersection(tree) | Self::Difference(tree) => {

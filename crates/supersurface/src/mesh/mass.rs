@@ -1,12 +1,12 @@
-//! Mass properties of a watertight mesh: sums over tetrahedra with one corner in common.
+//! Mass properties of a watertight mesh, and by meshes of any solid: sums over tetrahedra with one corner in common.
 //!
 //! For a tetrahedron with the corners 0, a, b, c: `V = a·(b × c)/6`, first moment `V s/4` and second moment
 //! `V (aaᵀ + bbᵀ + ccᵀ + ssᵀ)/20` with `s = a + b + c`.
 
 use nalgebra::Matrix3;
 
-use super::Mesh;
-use crate::shape::{Mass, MassProperties};
+use super::{MarchError, MarchOptions, Mesh, Resolution, TessellateError, march, tessellate};
+use crate::shape::{Implicit, Mass, MassProperties, Parametric};
 use crate::{Point, Vector};
 
 impl MassProperties for Mesh {
@@ -35,6 +35,67 @@ impl MassProperties for Mesh {
     }
 }
 
+/// Mass properties that are not known in closed form, with an estimate of their error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EstimatedMass {
+    /// Of the finer of two meshes.
+    pub mass: Mass,
+    /// The largest of what the coarser mesh differs by: in its volume and its inertia relatively, in its centre over the
+    /// radius of gyration. The finer one is nearer by about a factor of four.
+    pub error: f64,
+}
+
+impl EstimatedMass {
+    fn of_meshes(coarse: &Mesh, fine: &Mesh, density: f64) -> Self {
+        let (mass, other) = (fine.mass_properties(density), coarse.mass_properties(density));
+        let gyration = (mass.inertia.trace() / (2.0 * mass.mass)).sqrt();
+        let error = [
+            other.mass / mass.mass - 1.0,
+            (other.inertia - mass.inertia).norm() / mass.inertia.norm(),
+            (other.centre - mass.centre).norm() / gyration,
+        ];
+        Self { mass, error: error.into_iter().map(f64::abs).fold(0.0, f64::max) }
+    }
+}
+
+/// Mass properties of the solid in a closed surface, for a density in kg/m³, by meshes within `tolerance` metres (`None`
+/// chooses) and a quarter of it. The errors are those of [`tessellate`].
+///
+/// ```
+/// use supersurface::deform::{Deformed, Taper};
+/// use supersurface::{mesh::mass_of_surface, shape::Superellipsoid};
+/// let tin = Superellipsoid::new([0.03, 0.03, 0.05], [0.2, 1.0])?;
+/// let cup = Deformed::new(tin, Taper::new([0.3, 0.3], 0.05)?)?;
+/// let found = mass_of_surface(&cup, 1000.0, None)?;
+/// assert!((found.mass.mass / (1000.0 * cup.volume()) - 1.0).abs() < found.error);
+/// assert!(found.mass.centre.z > 0.0 && found.error < 5e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn mass_of_surface<S: Parametric + ?Sized>(
+    surface: &S,
+    density: f64,
+    tolerance: Option<f64>,
+) -> Result<EstimatedMass, TessellateError> {
+    let coarse = tessellate(surface, tolerance)?;
+    let fine = tessellate(surface, Some(coarse.tolerance / 4.0))?;
+    Ok(EstimatedMass::of_meshes(&coarse.mesh, &fine.mesh, density))
+}
+
+/// Mass properties of a bounded implicit solid, for a density in kg/m³, marched with `cells` along its longest side and
+/// with half as many. The errors are those of [`march`].
+pub fn mass_of_solid<S: Implicit + Sync + ?Sized>(
+    solid: &S,
+    density: f64,
+    cells: usize,
+) -> Result<EstimatedMass, MarchError> {
+    let marched = |cells| {
+        let resolution = Resolution::Count(cells);
+        march(solid, &MarchOptions { resolution, ..MarchOptions::default() })
+    };
+    Ok(EstimatedMass::of_meshes(&marched(cells / 2)?, &marched(cells)?, density))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,5 +118,24 @@ mod tests {
             assert!(off < 4e-3, "{off}");
         }
         assert_eq!(Mesh::default().mass_properties(1.0).mass, 0.0);
+    }
+
+    #[test]
+    fn errors_are_not_larger_than_estimated() {
+        let tin = Superellipsoid::new([0.03, 0.05, 0.08], [0.4, 1.2]).unwrap();
+        let ring = Supertoroid::new([0.01, 0.02, 0.015], 3.0, [0.7, 1.3]).unwrap();
+        let truths = [tin.mass_properties(2.0), ring.mass_properties(2.0)];
+        let found = [
+            mass_of_surface(&tin, 2.0, None).unwrap(),
+            mass_of_surface(&ring, 2.0, None).unwrap(),
+            mass_of_solid(&tin, 2.0, 60).unwrap(),
+            mass_of_solid(&ring, 2.0, 60).unwrap(),
+        ];
+        for (found, truth) in found.iter().zip(truths.iter().cycle()) {
+            assert!(found.error < 0.02, "{found:?}");
+            assert!((found.mass.mass / truth.mass - 1.0).abs() < found.error);
+            let off = (found.mass.inertia - truth.inertia).norm() / truth.inertia.norm();
+            assert!(off < found.error, "{off} {found:?}");
+        }
     }
 }

@@ -60,7 +60,7 @@ fn exponents(solid: &Solid) -> [f64; 2] {
         }
         Solid::Supercylinder(s) => [1.0, s.exponent()],
         Solid::Supercone(s) => [1.0, s.exponent()],
-        Solid::Supershape(_) => [1.0; 2],
+        Solid::Supershape(_) | Solid::RadialExtended(_) => [1.0; 2],
     }
 }
 

@@ -5,8 +5,9 @@
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
-    Implicit, InvalidShape, MassProperties, Parametric, SecondOrder, SeparableSuperquadric,
-    Supercone, Supercylinder, Superellipsoid, Supershape, Supertoroid, SupportMap,
+    Implicit, InvalidShape, MassProperties, Parametric, RadialExtended, SecondOrder,
+    SeparableSuperquadric, Supercone, Supercylinder, Superellipsoid, Supershape, Supertoroid,
+    SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -36,6 +37,8 @@ pub enum Solid {
     Supercone(Supercone),
     /// The product of two superformulas.
     Supershape(Box<Supershape>),
+    /// Exponents that follow the geometric angles.
+    RadialExtended(Box<RadialExtended>),
     /// Sections across z grow or shrink.
     Tapered(Box<Deformed<Self, Taper>>),
     /// Sections across z turn.
@@ -80,6 +83,7 @@ impl Solid {
             Self::Supercylinder(_) => "supercylinder".into(),
             Self::Supercone(_) => "supercone".into(),
             Self::Supershape(_) => "supershape".into(),
+            Self::RadialExtended(_) => "radial extended superellipsoid".into(),
             Self::Tapered(s) => deformed(s.shape(), "tapered"),
             Self::Twisted(s) => deformed(s.shape(), "twisted"),
             Self::Bent(s) => deformed(s.shape(), "bent"),
@@ -133,6 +137,7 @@ impl Solid {
             Self::Supercylinder(s) => s,
             Self::Supercone(s) => s,
             Self::Supershape(s) => &**s,
+            Self::RadialExtended(s) => &**s,
             Self::Tapered(s) => &**s,
             Self::Twisted(s) => &**s,
             Self::Bent(s) => &**s,
@@ -149,6 +154,7 @@ impl Solid {
             Self::Supercylinder(s) => s,
             Self::Supercone(s) => s,
             Self::Supershape(s) => &**s,
+            Self::RadialExtended(s) => &**s,
             Self::Tapered(s) => &**s,
             Self::Twisted(s) => &**s,
             Self::Bent(s) => &**s,
@@ -190,6 +196,7 @@ impl Solid {
             Self::Separable(s) => Some(s),
             Self::Supercylinder(s) => Some(s),
             Self::Supercone(s) => Some(s),
+            Self::Supershape(s) => Some(&**s),
             _ => None,
         }
     }

@@ -2,6 +2,7 @@
 
 mod assembly;
 mod closest;
+mod combined;
 mod conformance;
 mod floors;
 mod golden_antipodal;

@@ -5,6 +5,7 @@
 //! when the normals span space and convex when all exponents are at least 1.
 
 mod form;
+mod hessian;
 mod interior;
 mod reach;
 

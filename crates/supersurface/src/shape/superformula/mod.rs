@@ -5,6 +5,7 @@
 //! of semi-axes `a`, `b`.
 
 mod extent;
+mod hessian;
 mod mass;
 mod supershape;
 
@@ -110,6 +111,31 @@ impl Superformula {
         };
         let turn = over(second, terms.cos, terms.sin) * n3 - over(first, terms.sin, terms.cos) * n2;
         Some(-0.25 * self.m / n1 * turn)
+    }
+
+    /// Derivative of [`log_slope`](Self::log_slope): with `T = d ln B/dψ` of the bracket B,
+    /// `T' = w_c n2 ((n2-1) sec²ψ - n2) + w_s n3 ((n3-1) csc²ψ - n3) - T²`. `None` where it is infinite (a vanishing
+    /// cosine with `n2 < 2`, or sine with `n3 < 2`).
+    pub(crate) fn log_curvature(&self, phi: f64) -> Option<f64> {
+        let terms = self.terms(phi);
+        let ([n1, n2, n3], quarter) = (self.n, 0.25 * self.m);
+        if self.m == 0.0 {
+            return Some(0.0);
+        }
+        let turn = -self.log_slope(phi)? * n1 / quarter;
+        let sum = terms.log_sum();
+        // w/c² of a term that may vanish together with the function
+        let steep = |log: f64, log_scale: f64, c: f64, n: f64| match c == 0.0 {
+            false => Some((log - sum).exp() / (c * c)),
+            true if n > 2.0 => Some(0.0),
+            true => (n == 2.0).then(|| (-n * log_scale - sum).exp()),
+        };
+        let [a, b] = self.scales.map(f64::ln);
+        let [first, second] = terms.shares();
+        let bend = n2 * ((n2 - 1.0) * steep(terms.log_first, a, terms.cos, n2)? - n2 * first)
+            + n3 * ((n3 - 1.0) * steep(terms.log_second, b, terms.sin, n3)? - n3 * second);
+        let curvature = -quarter * quarter / n1 * (bend - turn * turn);
+        curvature.is_finite().then_some(curvature)
     }
 
     fn terms(&self, phi: f64) -> Terms {

@@ -78,7 +78,7 @@ impl Supershape {
     }
 
     /// Longitude, latitude and `√(u² + z²)` of a point.
-    fn angles(&self, p: &Point) -> (f64, f64, f64) {
+    pub(super) fn angles(&self, p: &Point) -> (f64, f64, f64) {
         let theta = p.y.atan2(p.x);
         let u = p.x.hypot(p.y) / self.longitude.radius(theta);
         (theta, p.z.atan2(u), u.hypot(p.z))

@@ -53,10 +53,10 @@ mod lines {
     conforms!(supercone: supercone => gradient hessian on_surface parametric curvature bounds touched support tight mass ray nearest nearest_solid point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(separable_superquadric: separable => gradient hessian dual on_surface parametric curvature bounds touched support tight mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(quadric: quadric => gradient hessian on_surface parametric curvature bounds support mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
-    conforms!(supershape: supershape => gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
-    conforms!(hyperquadric: hyperquadric => gradient bounds ray nearest_solid point_extremes);
+    conforms!(supershape: supershape => gradient hessian on_surface parametric bounds mass ray nearest point_extremes hessian_extremes surface_extremes);
+    conforms!(hyperquadric: hyperquadric => gradient hessian bounds ray nearest_solid point_extremes hessian_extremes);
     conforms!(extended: extended => parametric surface_extremes);
-    conforms!(extended_radial: extended_radial => gradient bounds ray nearest_solid point_extremes);
+    conforms!(extended_radial: extended_radial => gradient on_surface parametric bounds ray nearest_solid point_extremes surface_extremes);
     conforms!(tapered: tapered => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
     conforms!(twisted: twisted => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
     conforms!(bent: bent => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
