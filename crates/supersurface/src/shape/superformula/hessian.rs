@@ -29,8 +29,8 @@ impl SecondOrder for Supershape {
         if radius == 0.0 || distance == 0.0 {
             return None;
         }
-        let (around, around_second) = polar(&self.longitude(), theta)?;
-        let (along, along_second) = polar(&self.latitude(), phi)?;
+        let (around, around_second) = polar(self.longitude(), theta)?;
+        let (along, along_second) = polar(self.latitude(), phi)?;
         let du = Vector::new(around.x, around.y, 0.0);
         let mut second_u = Matrix3::zeros();
         second_u.fixed_view_mut::<2, 2>(0, 0).copy_from(&(around_second / radius));
