@@ -29,9 +29,10 @@ fn info_says_how_large_and_how_heavy() {
     assert!(by_file.contains("superellipsoid, tapered"), "{by_file}");
     assert_eq!(by_file, by_input);
     assert_eq!(by_file, by_flags);
-    // a ball with a hole through it: 4/3 π (R² - r²)^(3/2)
+    // a ball with a hole through it: 4/3 π (R² - r²)^(3/2), where half the hole is √(R² - r²) long
     let bead = run(&["info", BEAD, "--json"]).ended(0).json();
-    let volume = 4.0 / 3.0 * std::f64::consts::PI * (0.05f64.powi(2) - 0.02f64.powi(2)).powf(1.5);
+    let half_hole = (0.05f64.powi(2) - 0.02f64.powi(2)).sqrt();
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * half_hole.powi(3);
     assert!((bead["mass"]["volume"].as_f64().unwrap() / volume - 1.0).abs() < 3e-3, "{bead}");
     let endless = r#"{"type": "superparaboloid", "semi_axes": [1, 1, 1], "exponents": [1, 1]}"#;
     let told = run(&["info", endless, "--json"]).ended(0).json();
