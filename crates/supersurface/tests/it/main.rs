@@ -13,6 +13,7 @@ mod golden_members;
 mod golden_sampling;
 mod golden_shapes;
 mod hit;
+mod jacobians;
 mod mesh;
 mod picture;
 mod pipeline;
