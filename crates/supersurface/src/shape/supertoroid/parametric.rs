@@ -6,7 +6,7 @@ use super::Supertoroid;
 use crate::numeric::powers::{quadrant_cos_sin, signed_power};
 use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::Parametric;
-use crate::shape::superellipsoid::{angular_normal, angular_tangents};
+use crate::shape::angular::{layered_normal, layered_tangents};
 use crate::{Direction, Point, Vector};
 
 impl Parametric for Supertoroid {
@@ -24,11 +24,11 @@ impl Parametric for Supertoroid {
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
-        angular_tangents(self.semi_axes, self.ring_ratio, self.exponents, eta, omega)
+        layered_tangents(self.semi_axes, self.ring_ratio, self.exponents, eta, omega)
     }
 
     fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
-        angular_normal(self.semi_axes, self.exponents, eta, omega)
+        layered_normal(self.semi_axes, self.exponents, eta, omega)
     }
 }
 
