@@ -99,7 +99,7 @@ impl Tally {
                 .fold(other, f64::min);
             let [low, high] = shape.bounds();
             let accepted = brute + 1e-11 * (high - low).amax();
-            if !(ours <= accepted) {
+            if ours.is_nan() || ours > accepted {
                 self.failures += 1;
                 if std::env::var_os("SHOW").is_some() {
                     println!("{:?} {p:?}: {ours} {brute}", sheets[0]);
@@ -193,7 +193,7 @@ impl Sheet {
             let step = [s * across - c * along, -s * along - c * across];
             let longest = step[0].abs().max(step[1].abs());
             let cut = if longest > 3.0 { 3.0 / longest } else { 1.0 };
-            if !(longest > 1e-12) {
+            if longest.is_nan() || longest <= 1e-12 {
                 break;
             }
             let next = [place[0] + cut * step[0], place[1] + cut * step[1]];

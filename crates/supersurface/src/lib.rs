@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | 1 | [`numeric`] | norms, powers, random streams |
 //! | 2 | [`shape`] | the shapes: gauge, gradient, parametric points, support points, volume |
-//! | 3 | [`measure`], [`camera`] | first hit of a ray; pinhole cameras and depth images |
+//! | 3 | [`measure`], [`camera`] | first hits, nearest points, curvatures, boxes; pinhole cameras and depth images |
 //! | 4 | [`deform`] | shapes tapered, twisted, bent, hollowed; deformations nest |
 //! | 5 | [`surface`] | the closed family as one type, for files and programs |
 //! | 6 | [`combine`] | Boolean trees of solids; parts joined to an assembly |

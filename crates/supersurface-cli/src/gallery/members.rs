@@ -61,8 +61,14 @@ fn others() -> Result<Vec<(&'static str, Mesh)>, Failure> {
         let extended = ExtendedSuperellipsoid::new([1.0; 3], &profile, &section)?;
         let (a, e) = ([0.5, 0.5, 0.5], [0.8, 0.8]);
         Ok(vec![
-            ("supercylinder, ε2 = 0.6", marched(Supercylinder::new([1.0; 3], 0.6)?)),
-            ("supercone, ε2 = 1.4", marched(Supercone::new([1.0; 3], 1.4)?)),
+            (
+                "supercylinder, ε2 = 0.6",
+                Member::Solid(Solid::Supercylinder(Supercylinder::new([1.0; 3], 0.6)?)),
+            ),
+            (
+                "supercone, ε2 = 1.4",
+                Member::Solid(Solid::Supercone(Supercone::new([1.0; 3], 1.4)?)),
+            ),
             (
                 "equation 6, k = (2, 4, 10)",
                 Member::Solid(Solid::Separable(SeparableSuperquadric::new(
@@ -76,7 +82,10 @@ fn others() -> Result<Vec<(&'static str, Mesh)>, Failure> {
             ),
             ("hyperquadric, 4 terms", marched(Hyperquadric::new(&planes, &[4.0, 4.0, 6.0, 8.0])?)),
             ("extended superellipsoid (23)", Member::Extended(extended.clone())),
-            ("the same, radially", marched(extended.radial())),
+            (
+                "the same, radially",
+                Member::Solid(Solid::RadialExtended(Box::new(extended.radial()))),
+            ),
             ("superparaboloid, cut", cut(Superparaboloid::new(a, [0.7, 0.6])?)?),
             ("one sheet, cut", cut(SuperhyperboloidOneSheet::new(a, e)?)?),
             ("two sheets, cut", cut(SuperhyperboloidTwoSheets::new(a, e)?)?),

@@ -66,7 +66,10 @@ impl Sheet {
 
     /// A mesh alone.
     pub(super) fn mesh(&mut self, caption: impl Into<String>, mesh: &Mesh, colour: Colour) {
-        self.cell(caption, mesh.vertices(), |picture| {
+        let first = mesh.vertices().first().copied().unwrap_or_default();
+        let spans = |[low, high]: [Point; 2], v: &Point| [low.inf(v), high.sup(v)];
+        let reach = mesh.vertices().iter().fold([first; 2], spans);
+        self.cell(caption, &corners(reach), |picture| {
             picture.mesh(mesh, colour, 1.0);
         });
     }
@@ -88,7 +91,10 @@ impl Sheet {
 
 /// Corners of the box around a solid.
 pub(super) fn box_corners(solid: &impl Implicit) -> Vec<Point> {
-    let [low, high] = solid.bounds();
+    corners(solid.bounds())
+}
+
+fn corners([low, high]: [Point; 2]) -> Vec<Point> {
     let corner = |k: usize| {
         Point::from(Vector::from_fn(|i, _| if k >> i & 1 == 0 { low[i] } else { high[i] }))
     };

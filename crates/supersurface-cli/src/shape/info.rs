@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
+use supersurface::mesh::mass_of_solid;
 use supersurface::nalgebra::Matrix3;
 use supersurface::shape::{Implicit, Mass, MassEstimate, MassProperties};
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::Model;
 
 use super::args::ShapeArgs;
-use super::meshed::{Fineness, Meshed, meshed};
 use crate::exit::{Failure, print};
 
 /// Cells along the longest side of what is marched.
@@ -104,7 +104,8 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         (None, Model::Quadric(quadric)) => {
             quadric.as_ellipsoid().map(|e| weighed(e.mass_estimate(density)))
         }
-        (None, _) if bounded => Some(of_meshes(name, model, density)?),
+        (None, Model::Implicit(_, s)) if bounded => Some(of_meshes(name, s, density)?),
+        (None, Model::Combined(s)) if bounded => Some(of_meshes(name, s, density)?),
         (None, _) => None,
     };
     Ok(Facts { name: kind, bounds, convex, mass, notes })
@@ -130,16 +131,11 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
     })
 }
 
-/// Of a fine mesh, with what a coarser one differs by as the error.
-fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Weighed, Failure> {
-    let coarse = meshed(name, model, Fineness { tolerance: None, cells: CELLS / 2 })?;
-    let finer = coarse.distance.filter(|d| *d > 0.0).map(|d| d / 4.0);
-    let fine = Fineness { tolerance: finer, cells: CELLS };
-    // where a finer mesh is too fine the coarse one has to do
-    let fine = meshed(name, model, fine).unwrap_or(Meshed { mesh: coarse.mesh.clone(), ..coarse });
-    let mass = fine.mesh.mass_properties(density);
-    let error = (coarse.mesh.volume() * density / mass.mass - 1.0).abs();
-    Ok(Weighed { mass, error, how: "of a mesh" })
+/// Of two meshes.
+fn of_meshes(name: &str, solid: &(impl Implicit + Sync), density: f64) -> Result<Weighed, Failure> {
+    let found = mass_of_solid(solid, density, CELLS);
+    let MassEstimate { mass, error } = found.map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    Ok(Weighed { mass, error, how: "of meshes" })
 }
 
 fn as_text(facts: &Facts, density: f64) -> String {
@@ -209,7 +205,7 @@ fn principal(inertia: &Matrix3<f64>) -> Vector {
 }
 
 fn about(error: f64) -> String {
-    if error > 0.0 { format!(", about {:.1e} off", error) } else { String::new() }
+    if error > 0.0 { format!(", less than {error:.1e} off") } else { String::new() }
 }
 
 fn row(v: &Vector) -> String {

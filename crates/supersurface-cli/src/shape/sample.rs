@@ -200,8 +200,10 @@ fn facing(p: &Point, normal: Option<Direction>) -> Direction {
     normal.or(Direction::try_new(p.coords, 0.0)).unwrap_or(Vector::z_axis())
 }
 
+type Sight<'a> = Box<dyn Fn(&Point) -> bool + 'a>;
+
 /// Whether nothing of the model is between a point of it and the eye.
-fn visible<'a>(model: &'a Model, eye: &'a Point) -> Option<Box<dyn Fn(&Point) -> bool + 'a>> {
+fn visible<'a>(model: &'a Model, eye: &'a Point) -> Option<Sight<'a>> {
     let free = move |solid: &'a (dyn Implicit + 'a)| {
         let seen = move |p: &Point| {
             let Some(way) = Direction::try_new(p - eye, 0.0) else { return false };
@@ -209,7 +211,7 @@ fn visible<'a>(model: &'a Model, eye: &'a Point) -> Option<Box<dyn Fn(&Point) ->
             let hit = first_hit(solid, &Ray { origin: *eye, direction: way }, far);
             hit.is_none_or(|h| h.distance >= far * (1.0 - 1e-6))
         };
-        Box::new(seen) as Box<dyn Fn(&Point) -> bool + 'a>
+        Box::new(seen) as Sight<'a>
     };
     match model {
         Model::Solid(s) => Some(free(s)),

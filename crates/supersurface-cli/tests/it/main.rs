@@ -4,6 +4,7 @@ mod degenerate;
 mod exit_status;
 mod inputs;
 mod outputs;
+mod shapes;
 mod shared;
 
 use std::io::Write;

@@ -86,10 +86,10 @@ impl ShapeRow {
                 Leaf::Solid(Solid::Supershape(Box::new(shape)))
             }
             Self::Supercylinder { semi_axes, exponent } => {
-                Leaf::Implicit(Box::new(Supercylinder::new(semi_axes, exponent)?))
+                Leaf::Solid(Solid::Supercylinder(Supercylinder::new(semi_axes, exponent)?))
             }
             Self::Supercone { semi_axes, exponent } => {
-                Leaf::Implicit(Box::new(Supercone::new(semi_axes, exponent)?))
+                Leaf::Solid(Solid::Supercone(Supercone::new(semi_axes, exponent)?))
             }
             Self::Superparaboloid { semi_axes, exponents } => {
                 Leaf::Implicit(Box::new(Superparaboloid::new(semi_axes, exponents)?))

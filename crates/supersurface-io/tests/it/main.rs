@@ -4,6 +4,7 @@ mod faults;
 mod formats;
 mod grippers;
 mod odd_files;
+mod shapes;
 mod write;
 
 /// The folder of shared data, when the environment names it.

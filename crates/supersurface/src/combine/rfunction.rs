@@ -107,8 +107,7 @@ pub fn intersection(f1: f64, f2: f64, alpha: Alpha) -> (f64, [f64; 2]) {
         if part > 0.0 {
             (1.0 - a) * (other / root) * (other / (root + part))
         } else {
-            // a tiny root times 1 + α may vanish
-            (1.0 - part / root) / (1.0 + a)
+            (root - part) / root / (1.0 + a)
         }
     };
     (value, [slope(f1, f2), slope(f2, f1)])

@@ -6,6 +6,7 @@
 use nalgebra::Matrix3;
 
 use super::Deformation;
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{Implicit, InvalidShape, Parametric, box_extent};
 use crate::{Direction, Point, Vector};
 
@@ -94,6 +95,10 @@ impl<S: Parametric, D: Deformation> Parametric for Deformed<S, D> {
 
     fn point(&self, eta: f64, omega: f64) -> Point {
         self.deformation.forward(&self.shape.point(eta, omega))
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.deformation.forward(&self.shape.point_at(eta, omega))
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {

@@ -1,7 +1,6 @@
 //! A grid of a surface's two angles, from which the mesh is made.
 //!
-//! Rows and columns are cut so that chords of meridians and of parallels stay within 0.45 of the tolerance of their
-//! arcs (`chords`); then every cell is compared with the surface at five points between its corners, takes the better
+//! Rows and columns are cut so that chords of meridians and of parallels stay close to their arcs (`chords`); then every cell is compared with the surface at five points between its corners, takes the better
 //! of its two diagonals, and its row or column is cut again where it is still too far. Poles are single vertices and
 //! seams share theirs, so that the mesh of a closed surface is closed by construction.
 
@@ -10,18 +9,19 @@ use std::collections::BTreeSet;
 use super::Mesh;
 use super::chords::{cuts, distance_to_triangle, quarters, sagitta};
 use crate::Point;
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::Parametric;
 
-/// Share of the tolerance that each direction of the grid may use.
-const SHARE: f64 = 0.45;
 /// Cells beyond which a tolerance is given up.
 const MOST_CELLS: usize = 4_000_000;
-/// Tolerance of the mesh on which a tolerance is chosen, as a share of the size: no less.
-const COARSEST: f64 = 2e-4;
+/// Chords of the mesh on which a tolerance is chosen, as a share of the size: no less.
+const COARSEST: f64 = 1e-4;
 
-/// Angles at which a surface is cut into cells.
+/// Angles at which a surface is cut into cells, by the parameters of [`QuarterAngle`]: faces of boxes are fine there.
 pub(super) struct Grid<'a, S: ?Sized> {
     surface: &'a S,
+    /// Ranges of the parameters of both angles.
+    domain: [[f64; 2]; 2],
     /// The largest difference of a coordinate, in metres.
     pub(super) size: f64,
     /// Whether the first and the last row are a point each.
@@ -48,9 +48,10 @@ pub(super) struct Further {
 impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
     /// A first grid, if the surface is finite and of some size.
     pub(super) fn new(surface: &'a S) -> Option<Self> {
-        let [rows, columns] = surface.domain().map(even);
+        let domain = surface.domain().map(|range| range.map(QuarterAngle::parameter));
+        let [rows, columns] = domain.map(even);
         let points: Vec<Vec<Point>> =
-            rows.iter().map(|e| columns.iter().map(|o| surface.point(*e, *o)).collect()).collect();
+            rows.iter().map(|e| columns.iter().map(|o| at(surface, *e, *o)).collect()).collect();
         let (first, last) = (points.first()?, points.last()?);
         let centre = first.first()?;
         let size = points.iter().flatten().map(|p| (p - centre).amax()).fold(0.0, f64::max);
@@ -66,7 +67,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
         ];
         // a ring whose hole has closed to a point is still a ring
         let poles = [first, last].map(|row| !joined[0] && pole(row));
-        Some(Self { surface, size, poles, joined, rows, columns })
+        Some(Self { surface, domain, size, poles, joined, rows, columns })
     }
 
     /// True when the surface has no border.
@@ -76,33 +77,61 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
 
     fn parallel(&self, eta: f64) -> impl Fn(f64) -> Point + use<'a, S> {
         let surface = self.surface;
-        move |omega| surface.point(eta, omega)
+        move |omega| at(surface, eta, omega)
     }
 
     fn meridian(&self, omega: f64) -> impl Fn(f64) -> Point + use<'a, S> {
         let surface = self.surface;
-        move |eta| surface.point(eta, omega)
+        move |eta| at(surface, eta, omega)
     }
 
-    /// Chooses columns and rows by the chords of some parallels and meridians.
-    pub(super) fn cut(&mut self, tolerance: f64) {
-        let [eta, omega] = self.surface.domain();
+    /// Chooses columns and rows by the chords of some parallels and meridians, which stay within these distances of
+    /// their arcs: those of meridians first.
+    pub(super) fn cut(&mut self, [along, around]: [f64; 2]) {
+        let [eta, omega] = self.domain;
         let parallels: Vec<_> = probes(eta, &self.rows).map(|t| self.parallel(t)).collect();
-        self.columns = cuts(&parallels, omega, SHARE * tolerance);
+        self.columns = cuts(&parallels, omega, around);
         let meridians: Vec<_> = probes(omega, &self.columns).map(|t| self.meridian(t)).collect();
-        self.rows = cuts(&meridians, eta, SHARE * tolerance);
+        self.rows = cuts(&meridians, eta, along);
     }
 
-    /// Two thousandths of volume over area, found on a coarse mesh: what chords cut off is a third of their largest
-    /// distance times the area, or less.
-    pub(super) fn default_tolerance(&mut self) -> f64 {
-        let ratio = |grid: &Self| {
-            let (mesh, ..) = grid.mesh(f64::INFINITY);
-            mesh.volume().abs() / mesh.area()
+    /// Distances of chords for which the volume is right to a thousandth: 0.9 thousandths of volume over area, since
+    /// chords cut off less than their largest distance times the area; and up to 16 times as much in a direction where
+    /// that changes the volume by a ten thousandth at most (the circles of a thin disc).
+    pub(super) fn default_chords(&mut self) -> [f64; 2] {
+        let ratio = |[volume, area]: [f64; 2]| volume.abs() / area;
+        let first = ratio(self.volume_and_area());
+        self.cut([(0.05 * first).max(COARSEST * self.size); 2]);
+        let least = 0.9e-3 * ratio(self.volume_and_area());
+        let mut volume = |looser: [f64; 2]| {
+            self.cut(looser.map(|k| k * least));
+            (!self.is_too_fine()).then(|| self.volume_and_area()[0])
         };
-        let coarse = 0.1 * ratio(self);
-        self.cut(coarse.max(COARSEST * self.size));
-        2.0e-3 * ratio(self)
+        let mut looser = [1.0; 2];
+        if let Some(fine) = volume(looser) {
+            for direction in 0..2 {
+                let enough = [16.0, 4.0].into_iter().find(|k| {
+                    let mut tried = [1.0; 2];
+                    tried[direction] = *k;
+                    volume(tried).is_some_and(|v| (v - fine).abs() <= 1e-4 * fine.abs())
+                });
+                looser[direction] = enough.unwrap_or(1.0);
+            }
+        }
+        looser.map(|k| k * least)
+    }
+
+    /// Volume and area of the mesh, the mean of both diagonals.
+    fn volume_and_area(&self) -> [f64; 2] {
+        let (vertices, numbers) = self.vertices();
+        let width = self.columns.len();
+        let cells = numbers.windows(width + 2).enumerate().filter(|(k, _)| (k + 1) % width != 0);
+        let triangles = cells.flat_map(|(_, w)| {
+            let [a, b, d, c] = [w[0], w[1], w[width], w[width + 1]];
+            [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
+        });
+        let mesh = Mesh::from_checked(vertices, triangles.collect());
+        [0.5 * mesh.volume(), 0.5 * mesh.area()]
     }
 
     /// True when the mesh would have too many cells.
@@ -112,7 +141,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
 
     /// The spans of rows and of columns; the inner angles quarter the longest of some chords.
     fn spans(&self) -> [Vec<Span>; 2] {
-        let [eta, omega] = self.surface.domain();
+        let [eta, omega] = self.domain;
         let meridians: Vec<_> = even(omega).into_iter().map(|t| self.meridian(t)).collect();
         let parallels: Vec<_> = even(eta).into_iter().map(|t| self.parallel(t)).collect();
         [spans(&self.rows, &meridians), spans(&self.columns, &parallels)]
@@ -162,7 +191,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
                 let known = twin.and_then(|at| numbers.get(at).copied());
                 numbers.push(known.unwrap_or(vertices.len() as u32));
                 if known.is_none() {
-                    vertices.push(self.surface.point(*eta, *omega));
+                    vertices.push(at(self.surface, *eta, *omega));
                 }
             }
         }
@@ -196,7 +225,7 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
     ) -> ([[u32; 3]; 2], f64) {
         let ([e0, e1, e2], [o0, o1, o2]) = (row.inner, column.inner);
         let points = [(e1, o1), (e0, o0), (e0, o2), (e2, o0), (e2, o2)]
-            .map(|(eta, omega)| self.surface.point(eta, omega));
+            .map(|(eta, omega)| at(self.surface, eta, omega));
         let vertex = |k: u32| vertices.get(k as usize).copied().unwrap_or_default();
         let judged = |triangles: [[u32; 3]; 2]| {
             let [one, other] = triangles.map(|t| t.map(vertex));
@@ -239,6 +268,12 @@ impl<'a, S: Parametric + ?Sized> Grid<'a, S> {
         }
         self.rows.len() + self.columns.len() > before
     }
+}
+
+/// The point at two parameters.
+fn at<S: Parametric + ?Sized>(surface: &S, eta: f64, omega: f64) -> Point {
+    let [eta, omega] = [eta, omega].map(QuarterAngle::from_parameter);
+    surface.point_at(eta, omega)
 }
 
 /// Angles that part a range evenly, with the seams of a closed surface among them.

@@ -4,6 +4,7 @@ pub mod dirichlet;
 pub mod gauss;
 pub mod lanes;
 pub mod powers;
+pub mod quarter_angle;
 pub mod random;
 pub mod spline;
 pub mod superellipse;

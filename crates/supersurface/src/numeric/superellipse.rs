@@ -75,45 +75,6 @@ pub fn dual_norm(u: f64, v: f64, epsilon: f64) -> f64 {
     if q.is_infinite() { u.max(v) } else { norm(u, v, q) }
 }
 
-/// First and second derivatives of the norm at a pair of numbers of any sign.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Derivatives {
-    /// `N = (|u|^p + |v|^p)^(1/p)`.
-    pub norm: f64,
-    /// `[N_u, N_v]`.
-    pub first: [f64; 2],
-    /// `[N_uu, N_uv, N_vv]`.
-    pub second: [f64; 3],
-}
-
-/// The norm with its derivatives `N_u = (|u|/N)^(p-1) sgn u`, `N_uu = (p-1)/N (|u|/N)^(p-2) (|v|/N)^p` and
-/// `N_uv = -(p-1)/N (|u| |v|/N²)^(p-1) sgn u sgn v`; `None` where one of them is infinite or does not exist:
-/// at the origin, and on an axis for `p < 2`.
-pub fn derivatives(u: f64, v: f64, p: f64) -> Option<Derivatives> {
-    let (a, b) = (u.abs(), v.abs());
-    let norm = norm(a, b, p);
-    if norm == 0.0 || !norm.is_finite() {
-        return None;
-    }
-    let (x, y) = (a / norm, b / norm);
-    // 0^0 is 1 and 0 to a negative power infinite
-    let raised = |x: f64, s: f64| match (x == 0.0, s == 0.0) {
-        (_, true) => 1.0,
-        (true, _) if s < 0.0 => f64::INFINITY,
-        _ => super::powers::power(x, s),
-    };
-    let bend = (p - 1.0) / norm;
-    // both factors of a term are never zero together, but one may be while the other is infinite
-    let second = |x: f64, y: f64| {
-        if p == 2.0 { bend * y * y } else { bend * raised(x, p - 2.0) * raised(y, p) }
-    };
-    let sign = |v: f64| if v < 0.0 { -1.0 } else { 1.0 };
-    let first = [raised(x, p - 1.0) * sign(u), raised(y, p - 1.0) * sign(v)];
-    let mixed = -bend * first[0] * first[1];
-    let out = Derivatives { norm, first, second: [second(x, y), mixed, second(y, x)] };
-    out.first.iter().chain(&out.second).all(|v| v.is_finite()).then_some(out)
-}
-
 /// One layer of a gauge in logarithms, as the fitting kernels use it.
 #[derive(Clone, Copy, Debug)]
 pub struct LogLayer {

@@ -55,28 +55,23 @@ impl Picture {
     /// A triangle mesh, shaded: smooth where its faces meet at less than 30 degrees.
     pub fn mesh(&mut self, mesh: &Mesh, colour: Colour, alpha: f64) -> &mut Self {
         let alpha = level(alpha);
-        let mut around = vec![Vector::zeros(); mesh.vertices().len()];
-        for (corners, triangle) in mesh.corners().zip(mesh.triangles()) {
-            let [a, b, c] = corners;
+        let areas: Vec<Vector> = mesh.corners().map(|[a, b, c]| (b - a).cross(&(c - a))).collect();
+        let mut faces = vec![Vec::new(); mesh.vertices().len()];
+        for (face, triangle) in mesh.triangles().iter().enumerate() {
             for i in triangle {
-                if let Some(sum) = around.get_mut(*i as usize) {
-                    *sum += (b - a).cross(&(c - a));
-                }
+                faces[*i as usize].push(face);
             }
         }
-        for (corners, triangle) in mesh.corners().zip(mesh.triangles()) {
-            let [a, b, c] = corners;
-            let Some(face) = Direction::try_new((b - a).cross(&(c - a)), 0.0) else { continue };
-            let shaded = std::array::from_fn(|k| {
-                let smooth = triangle
-                    .get(k)
-                    .and_then(|i| around.get(*i as usize))
-                    .and_then(|n| Direction::try_new(*n, 0.0))
-                    .filter(|n| n.dot(&face) > SMOOTH);
-                let shade = self.shade(colour, &smooth.unwrap_or(face), 0.35);
-                (corners.get(k).copied().unwrap_or(a), shade)
-            });
-            self.triangle(shaded, alpha);
+        for ((corners, triangle), area) in mesh.corners().zip(mesh.triangles()).zip(&areas) {
+            let Some(own) = Direction::try_new(*area, 0.0) else { continue };
+            let smooth = |i: u32| {
+                let near = faces[i as usize].iter().map(|f| areas[*f]);
+                near.filter(|n| n.dot(&own) > SMOOTH * n.norm()).sum::<Vector>()
+            };
+            let [a, b, c] = *triangle;
+            let shades = [a, b, c].map(|i| self.shade(colour, &smooth(i), 0.35));
+            let [p, q, r] = corners;
+            self.triangle([(p, shades[0]), (q, shades[1]), (r, shades[2])], alpha);
         }
         self
     }

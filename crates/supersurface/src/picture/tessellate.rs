@@ -58,6 +58,8 @@ fn exponents(solid: &Solid) -> [f64; 2] {
             let [k1, k2, k3] = s.powers();
             [2.0 / k3, 4.0 / (k1 + k2)]
         }
+        Solid::Supercylinder(s) => [1.0, s.exponent()],
+        Solid::Supercone(s) => [1.0, s.exponent()],
         Solid::Supershape(_) | Solid::RadialExtended(_) => [1.0; 2],
     }
 }

@@ -37,3 +37,36 @@ pub(super) fn unit(n: Vector) -> Option<Direction> {
 pub(super) fn finite(tangents: [Vector; 2]) -> Option<[Vector; 2]> {
     tangents.iter().flat_map(Vector::iter).all(|v| v.is_finite()).then_some(tangents)
 }
+
+/// `ν = (cos^(2-ε1) η cos^(2-ε2) ω / a1, cos^(2-ε1) η sin^(2-ε2) ω / a2, sin^(2-ε1) η / a3)`, normalised (FORMULAS §6).
+/// Superellipsoid and supertoroid share it. `None` on the seams and poles that exponents from 2 turn into edges and
+/// cusps.
+pub(super) fn layered_normal(
+    [a1, a2, a3]: [f64; 3],
+    [e1, e2]: [f64; 2],
+    eta: f64,
+    omega: f64,
+) -> Option<Direction> {
+    let [c, s] = superellipse_normal(eta, e1)?;
+    // at a pole all meridians meet
+    let [x, y] = if c == 0.0 { [0.0; 2] } else { superellipse_normal(omega, e2)? };
+    unit(Vector::new(c * x / a1, c * y / a2, s / a3))
+}
+
+/// Derivatives of `(a1 r cos^ε2 ω, a2 r sin^ε2 ω, a3 sin^ε1 η)` with `r = ring + cos^ε1 η` by both angles; the ring of a
+/// superellipsoid is 0.
+pub(super) fn layered_tangents(
+    [a1, a2, a3]: [f64; 3],
+    ring: f64,
+    [e1, e2]: [f64; 2],
+    eta: f64,
+    omega: f64,
+) -> Option<[Vector; 2]> {
+    let ([c, _], [x, y]) = (superellipse(eta, e1), superellipse(omega, e2));
+    let ([dc, ds], [dx, dy]) = (superellipse_slopes(eta, e1)?, superellipse_slopes(omega, e2)?);
+    let r = ring + c;
+    finite([
+        Vector::new(a1 * dc * x, a2 * dc * y, a3 * ds),
+        Vector::new(a1 * r * dx, a2 * r * dy, 0.0),
+    ])
+}

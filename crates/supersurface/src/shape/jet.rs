@@ -93,6 +93,22 @@ impl Jet {
         Self { value, gradient, hessian, half_square: None }
     }
 
+    /// How far this is from a number, `|f - c|`.
+    pub(super) fn away_from(&self, c: f64) -> Self {
+        let off = self.value - c;
+        let square = self.gradient * self.gradient.transpose();
+        if off == 0.0 {
+            let gradient = Vector::zeros();
+            return Self { value: 0.0, gradient, hessian: None, half_square: Some(square) };
+        }
+        Self {
+            value: off.abs(),
+            gradient: self.gradient * off.signum(),
+            hessian: self.hessian.map(|h| h * off.signum()),
+            half_square: None,
+        }
+    }
+
     /// The power `s` of a function that is not zero.
     pub(super) fn raised(&self, s: f64) -> Self {
         let value = power(self.value, s);

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
     Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, SecondOrder,
     SupportMap, finite_or_zero,
@@ -100,6 +101,10 @@ impl<S: Parametric> Parametric for Posed<S> {
 
     fn point(&self, eta: f64, omega: f64) -> Point {
         self.pose * self.shape.point(eta, omega)
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.pose * self.shape.point_at(eta, omega)
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {

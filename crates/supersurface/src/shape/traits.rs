@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use nalgebra::Matrix3;
 
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{Mass, MassEstimate};
 use crate::{Direction, Point, Vector};
 
@@ -105,6 +106,12 @@ pub trait Parametric {
 
     /// Surface point at the two angles.
     fn point(&self, eta: f64, omega: f64) -> Point;
+
+    /// Surface point at angles that may lie nearer to a seam than numbers in radians can; that of
+    /// [`point`](Self::point) where the shape has no need of it.
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.point(eta.radians(), omega.radians())
+    }
 
     /// Derivatives of the point by `eta` and by `omega`, in metres per radian; `None` where one is infinite or
     /// does not exist (seams, for exponents under 1).

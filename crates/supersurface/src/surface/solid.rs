@@ -3,9 +3,11 @@
 //! Deformations nest: a deformed solid is a solid again.
 
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
     Filled, Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, RadialExtended,
-    SecondOrder, SeparableSuperquadric, Superellipsoid, Supershape, Supertoroid, SupportMap,
+    SecondOrder, SeparableSuperquadric, Supercone, Supercylinder, Superellipsoid, Supershape,
+    Supertoroid, SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -29,9 +31,13 @@ pub enum Solid {
     Supertoroid(Supertoroid),
     /// Equation 6: an exponent for each axis.
     Separable(SeparableSuperquadric),
+    /// Straight sides on a superelliptic base.
+    Supercylinder(Supercylinder),
+    /// A superelliptic base and an apex.
+    Supercone(Supercone),
     /// The product of two superformulas.
     Supershape(Box<Supershape>),
-    /// Exponents that follow the angles of the point.
+    /// Exponents that follow the geometric angles.
     RadialExtended(Box<RadialExtended>),
     /// Sections across z grow or shrink.
     Tapered(Box<Deformed<Self, Taper>>),
@@ -75,6 +81,8 @@ macro_rules! views {
                     Self::Superellipsoid(s) => s,
                     Self::Supertoroid(s) => s,
                     Self::Separable(s) => s,
+                    Self::Supercylinder(s) => s,
+                    Self::Supercone(s) => s,
                     Self::Supershape(s) => &**s,
                     Self::RadialExtended(s) => &**s,
                     Self::Tapered(s) => &**s,
@@ -96,6 +104,8 @@ impl Solid {
             Self::Superellipsoid(_) => "superellipsoid".into(),
             Self::Supertoroid(_) => "supertoroid".into(),
             Self::Separable(_) => "separable superquadric".into(),
+            Self::Supercylinder(_) => "supercylinder".into(),
+            Self::Supercone(_) => "supercone".into(),
             Self::Supershape(_) => "supershape".into(),
             Self::RadialExtended(_) => "radial extended superellipsoid".into(),
             Self::Tapered(s) => deformed(s.shape(), "tapered"),
@@ -156,6 +166,8 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supercylinder(s) => Some(s),
+            Self::Supercone(s) => Some(s),
             _ => None,
         }
     }
@@ -166,6 +178,8 @@ impl Solid {
             Self::Superellipsoid(s) => Some(s),
             Self::Supertoroid(s) => Some(s),
             Self::Separable(s) => Some(s),
+            Self::Supercylinder(s) => Some(s),
+            Self::Supercone(s) => Some(s),
             Self::Supershape(s) => Some(&**s),
             Self::RadialExtended(s) => Some(&**s),
             _ => None,
@@ -183,7 +197,7 @@ impl Filled for Solid {
     }
 }
 
-/// In closed form for the first three members, by integration for the others and for what is deformed.
+/// In closed form for the members but the last two, by integration for these and for what is deformed.
 impl MassProperties for Solid {
     fn mass_properties(&self, density: f64) -> Mass {
         self.weighed().mass_properties(density)
@@ -223,6 +237,10 @@ impl Parametric for Solid {
 
     fn point(&self, eta: f64, omega: f64) -> Point {
         self.parametric().point(eta, omega)
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.parametric().point_at(eta, omega)
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {

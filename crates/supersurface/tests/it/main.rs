@@ -2,6 +2,7 @@
 
 mod assembly;
 mod closest;
+mod combined;
 mod conformance;
 mod floors;
 mod golden_antipodal;
@@ -12,6 +13,7 @@ mod golden_members;
 mod golden_sampling;
 mod golden_shapes;
 mod hit;
+mod jacobians;
 mod mesh;
 mod picture;
 mod pipeline;

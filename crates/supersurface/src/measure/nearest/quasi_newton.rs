@@ -24,10 +24,10 @@ pub(super) fn lowest(
         let fall = direction.dot(&slope);
         let found = if fall < 0.0 { search(&f, &x, value, &direction, fall) } else { None };
         let Some((step, (lower, steep))) = found else {
-            // a metric that has gone stale is given up once
-            if fresh {
-                break;
-            }
+            // on an edge: along it, if it falls there
+            let Some((moved, sample)) = along_edge(&f, &x, value) else { break };
+            x += moved;
+            (value, slope) = sample;
             (inverse, fresh) = (Matrix2::identity() * step_size(value, &slope), true);
             continue;
         };
@@ -41,14 +41,51 @@ pub(super) fn lowest(
             inverse = half * inverse * half.transpose() + moved * moved.transpose() / curved;
             fresh = false;
         }
-        let gain = value - lower;
         x += moved;
         (value, slope) = (lower, steep);
-        if gain <= 0.0 || moved.norm() < 1e-13 {
+        if moved.norm() < 1e-14 {
             break;
         }
     }
     (value, x)
+}
+
+/// A step down from a place around which the slopes differ: against the shortest mean of the slopes in a circle
+/// (gradient sampling: Burke, Lewis and Overton 2005), for ever smaller circles.
+fn along_edge(
+    f: &impl Fn(&Vector2<f64>) -> Sample,
+    x: &Vector2<f64>,
+    value: f64,
+) -> Option<(Vector2<f64>, Sample)> {
+    (2..10).find_map(|digits| {
+        let radius = 10f64.powi(-digits);
+        let slopes: Vec<Vector2<f64>> = (0..8)
+            .map(|k| {
+                let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k) + 0.3).sin_cos();
+                f(&(x + Vector2::new(cos, sin) * radius))
+            })
+            .filter_map(|(value, slope)| value.is_finite().then_some(slope))
+            .collect();
+        let shortest = shortest_mean(&slopes)?;
+        let direction = -shortest * (radius / shortest.norm());
+        let (step, sample) = search(f, x, value, &direction, direction.dot(&shortest))?;
+        Some((direction * step, sample))
+    })
+}
+
+/// The shortest weighted mean of vectors; `None` when it is 0.
+fn shortest_mean(slopes: &[Vector2<f64>]) -> Option<Vector2<f64>> {
+    let pairs = slopes.iter().flat_map(|a| slopes.iter().map(move |b| (a, b)));
+    let between = pairs.map(|(a, b)| {
+        let along = b - a;
+        let share = -a.dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+        a + along * share.clamp(0.0, 1.0)
+    });
+    let shortest = between.min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    // every slope lies beyond it, unless they surround 0
+    let square = shortest.norm_squared();
+    let beyond = slopes.iter().all(|s| s.dot(&shortest) >= square * (1.0 - 1e-9));
+    (square > 0.0 && beyond).then_some(shortest)
 }
 
 /// A first step of about a thousandth.

@@ -6,11 +6,12 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
+use super::simplex::lowest;
 use crate::measure::implicit_curvature::tangents;
 use crate::shape::Implicit;
 use crate::{Direction, Point, Vector};
 
-/// The second derivatives of a shape at a point.
+/// [`SecondOrder::hessian`](crate::shape::SecondOrder::hessian) of a shape that has it.
 pub(super) type Hessian<S> = fn(&S, &Point) -> Option<Matrix3<f64>>;
 
 /// A gauge with the second derivatives that are known of it.
@@ -79,6 +80,20 @@ impl<S: Implicit> Surface<'_, S> {
             }
         }
         Some(now)
+    }
+
+    /// A point nearer than `start`, which may lie on an edge: places on the plane that faces `p` there, each taken back
+    /// to the surface.
+    pub(super) fn narrow(&self, start: &Point, p: &Point) -> Option<Foot> {
+        let away = p - start;
+        let distance = away.norm();
+        let [u, v] = tangents(&Direction::try_new(away, 1e-300)?);
+        let place = |at: &Vector2<f64>| start + (u * at.x + v * at.y) * distance;
+        let length = |at: [f64; 2]| {
+            self.land(&place(&at.into()), p).map_or(f64::INFINITY, |foot| foot.squared)
+        };
+        let (_, at) = lowest(length, [0.0; 2], 0.03, 1e-12);
+        self.land(&place(&at.into()), p)
     }
 
     /// The surface point that is reached along the gradient; `None` where there is none near.

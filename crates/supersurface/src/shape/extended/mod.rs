@@ -13,7 +13,7 @@
 mod hessian;
 mod mass;
 mod radial;
-mod radial_parametric;
+mod radial_mass;
 
 pub use radial::RadialExtended;
 

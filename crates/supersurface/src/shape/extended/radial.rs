@@ -6,9 +6,10 @@
 //! b). This is not the surface of equation 23 ([`ExtendedSuperellipsoid`]).
 
 use super::ExtendedSuperellipsoid;
+use crate::numeric::powers::quadrant_cos_sin;
 use crate::numeric::superellipse::{Weighted, weighted};
-use crate::shape::Implicit;
-use crate::{Point, Vector};
+use crate::shape::{Implicit, Parametric};
+use crate::{Direction, Point, Vector};
 
 /// The solid that [`ExtendedSuperellipsoid::radial`] makes.
 ///
@@ -126,11 +127,62 @@ impl Implicit for RadialExtended {
     }
 }
 
+impl Parametric for RadialExtended {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        self.numbers.domain()
+    }
+
+    /// The surface point on the ray along `d = (a1 cos η cos ω, a2 cos η sin ω, a3 sin η)`: `d/g(d)`.
+    fn point(&self, eta: f64, omega: f64) -> Point {
+        let [d, ..] = self.ray(eta, omega);
+        Point::from(d / self.gauge(&d.into()))
+    }
+
+    /// `d'/g - d (∇g·d')/g²`; `None` where the gauge has no gradient.
+    fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
+        let [d, along, around] = self.ray(eta, omega);
+        let (g, slope) = (self.gauge(&d.into()), self.gradient(&d.into()));
+        let smooth = slope.amax() > 0.0 && !self.has_edge(eta, omega);
+        let tangent = |by: Vector| by / g - d * (slope.dot(&by) / (g * g));
+        smooth.then(|| [tangent(along), tangent(around)])
+    }
+
+    fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
+        let [d, ..] = self.ray(eta, omega);
+        let slope = self.gradient(&d.into());
+        let smooth = slope.amax() > 0.0 && !self.has_edge(eta, omega);
+        smooth.then(|| Direction::new_normalize(slope / slope.amax()))
+    }
+}
+
+impl RadialExtended {
+    /// A direction and its derivatives by both angles.
+    fn ray(&self, eta: f64, omega: f64) -> [Vector; 3] {
+        let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
+        let a = Vector::from(self.numbers.semi_axes);
+        let scaled = |x: f64, y: f64, z: f64| Vector::new(x, y, z).component_mul(&a);
+        [
+            scaled(ce * co, ce * so, se),
+            scaled(-se * co, -se * so, ce),
+            scaled(-ce * so, ce * co, 0.0),
+        ]
+    }
+
+    /// True on a plane of symmetry where the exponent is 2 or more.
+    fn has_edge(&self, eta: f64, omega: f64) -> bool {
+        let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
+        let [f1, f2] = self.numbers.exponents(eta, omega);
+        let along = f1 >= 2.0 && (ce == 0.0 || se == 0.0);
+        // at a pole all meridians meet
+        along || f2 >= 2.0 && ce != 0.0 && (co == 0.0 || so == 0.0)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::numeric::random::Stream;
-    use crate::shape::{Parametric, Superellipsoid};
+    use crate::shape::Superellipsoid;
 
     fn vase() -> RadialExtended {
         let (profile, section) = ([0.5, 1.4, 0.8, 1.7], [0.6, 1.2, 0.9, 1.6, 0.7, 1.1]);

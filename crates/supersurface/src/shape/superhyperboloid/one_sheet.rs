@@ -131,22 +131,16 @@ impl Parametric for SuperhyperboloidOneSheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::checks;
 
     #[test]
-    fn forms_and_derivatives_agree() {
+    fn angles_beyond_the_limit_are_the_limit() {
         for exponents in [[1.0, 1.0], [0.3, 1.5], [1.9, 0.7], [0.7, 0.2]] {
             let s = SuperhyperboloidOneSheet::new([0.3, 0.5, 0.2], exponents).unwrap();
-            checks::forms(&s);
-            checks::derivatives(&s, checks::points([0.0; 3], [1.0, 1.0, 0.6], 100));
-            checks::extremes(&s);
             for eta in [-9.0, -1.5, 0.0, 0.4, 7.0] {
                 let p = s.point(eta, 0.3);
                 assert!((s.implicit_value(&p) - 1.0).abs() < 1e-11);
             }
         }
-        let wild = SuperhyperboloidOneSheet::new([1e-300, 5e-324, 1e300], [0.01, 10.0]);
-        checks::extremes(&wild.unwrap());
     }
 
     #[test]

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use super::Supertoroid;
 use crate::numeric::powers::{quadrant_cos_sin, signed_power};
+use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::Parametric;
-use crate::shape::superellipsoid::{angular_normal, angular_tangents};
+use crate::shape::angular::{layered_normal, layered_tangents};
 use crate::{Direction, Point, Vector};
 
 impl Parametric for Supertoroid {
@@ -15,19 +16,29 @@ impl Parametric for Supertoroid {
 
     /// `(a1 (a4 + cos^ε1 η) cos^ε2 ω, a2 (a4 + cos^ε1 η) sin^ε2 ω, a3 sin^ε1 η)`; η, ω in [-π, π).
     fn point(&self, eta: f64, omega: f64) -> Point {
-        let [a1, a2, a3] = self.semi_axes;
-        let [e1, e2] = self.exponents;
-        let ((ce, se), (co, so)) = (quadrant_cos_sin(eta), quadrant_cos_sin(omega));
-        let r = self.ring_ratio + signed_power(ce, e1);
-        let (x, y) = (signed_power(co, e2), signed_power(so, e2));
-        Point::new(a1 * r * x, a2 * r * y, a3 * signed_power(se, e1))
+        self.place(quadrant_cos_sin(eta), quadrant_cos_sin(omega))
+    }
+
+    fn point_at(&self, eta: QuarterAngle, omega: QuarterAngle) -> Point {
+        self.place(eta.cos_sin(), omega.cos_sin())
     }
 
     fn tangents(&self, eta: f64, omega: f64) -> Option<[Vector; 2]> {
-        angular_tangents(self.semi_axes, self.ring_ratio, self.exponents, eta, omega)
+        layered_tangents(self.semi_axes, self.ring_ratio, self.exponents, eta, omega)
     }
 
     fn normal(&self, eta: f64, omega: f64) -> Option<Direction> {
-        angular_normal(self.semi_axes, self.exponents, eta, omega)
+        layered_normal(self.semi_axes, self.exponents, eta, omega)
+    }
+}
+
+impl Supertoroid {
+    /// The point for cosines and sines of the angles.
+    fn place(&self, (ce, se): (f64, f64), (co, so): (f64, f64)) -> Point {
+        let [a1, a2, a3] = self.semi_axes;
+        let [e1, e2] = self.exponents;
+        let r = self.ring_ratio + signed_power(ce, e1);
+        let (x, y) = (signed_power(co, e2), signed_power(so, e2));
+        Point::new(a1 * r * x, a2 * r * y, a3 * signed_power(se, e1))
     }
 }

@@ -108,11 +108,11 @@ fn with_points<S: Implicit>(make: Make<S>, least: f64) {
                     assert!(finite(numbers) && hit.distance <= max, "{p}: {hit:?}");
                 }
             }
-            if i % 2000 == 0 {
-                if let Some(found) = finder.find(&p) {
-                    assert!(finite(found.point.iter()) && found.distance.is_finite(), "{found:?}");
-                }
-            }
+            let found = (i % 5000 == 0).then(|| finder.find(&p)).flatten();
+            assert!(
+                found.is_none_or(|f| finite(f.point.iter().chain([&f.distance]))),
+                "{p}: {found:?}"
+            );
         }
         for wild in WILD {
             let ray = Ray { origin: Point::new(wild, 0.0, 0.0), direction: Vector::x_axis() };

@@ -29,6 +29,11 @@ fn exponents(random: &mut Stream) -> [f64; 2] {
 /// From `scale` down to a hundredth of it; every third shape has equal ones.
 fn axes(random: &mut Stream, scale: f64) -> [f64; 3] {
     let ratio = if random.uniform() < 0.33 { 1.0 } else { 100f64 };
+    if !(1e-100..=1e100).contains(&scale) && random.uniform() < 0.5 {
+        // the ends of the numbers, all in one shape
+        let ends = [5e-324, 1e-300, 1.0, 1e300, scale];
+        return [0; 3].map(|_| ends[random.index(ends.len())]);
+    }
     [0; 3].map(|_| scale * (-random.uniform() * ratio.ln()).exp())
 }
 
@@ -76,7 +81,13 @@ pub(super) fn supercone(r: &mut Stream, scale: f64) -> Result<Supercone, Invalid
 }
 
 pub(super) fn separable(r: &mut Stream, scale: f64) -> Result<SeparableSuperquadric, InvalidShape> {
-    SeparableSuperquadric::new(axes(r, scale), [0; 3].map(|_| 2.0 / exponent(r)))
+    let mut power = || {
+        let special = [0.2, 0.6, 0.999, 1.0, 1.0001, 1e3, 1e6];
+        let chosen = special[r.index(special.len())];
+        if r.uniform() < 0.2 { chosen } else { 2.0 / exponent(r) }
+    };
+    let powers = [power(), power(), power()];
+    SeparableSuperquadric::new(axes(r, scale), powers)
 }
 
 /// The ellipsoid that ten coefficients come to.

@@ -50,8 +50,8 @@ mod lines {
     conforms!(superhyperboloid_one_sheet: one_sheet => gradient hessian dual on_surface parametric curvature bounds ray nearest_of_endless point_extremes hessian_extremes surface_extremes);
     conforms!(superhyperboloid_two_sheets: two_sheets => gradient hessian dual on_surface parametric curvature bounds ray nearest_of_endless point_extremes hessian_extremes surface_extremes);
     conforms!(superparaboloid: superparaboloid => gradient hessian dual on_surface parametric curvature bounds ray nearest_of_endless point_extremes hessian_extremes surface_extremes);
-    conforms!(supercylinder: supercylinder => gradient hessian bounds support tight mass ray nearest_solid point_extremes hessian_extremes support_extremes);
-    conforms!(supercone: supercone => gradient hessian bounds support tight mass ray nearest_solid point_extremes hessian_extremes support_extremes);
+    conforms!(supercylinder: supercylinder => gradient hessian on_surface parametric curvature bounds touched support tight mass ray nearest nearest_solid point_extremes hessian_extremes surface_extremes support_extremes);
+    conforms!(supercone: supercone => gradient hessian on_surface parametric curvature bounds touched support tight mass ray nearest nearest_solid point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(separable_superquadric: separable => gradient hessian dual on_surface parametric curvature bounds touched support tight mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(quadric: quadric => gradient hessian on_surface parametric curvature bounds support mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(supershape: supershape => gradient hessian on_surface parametric curvature bounds mass ray nearest point_extremes hessian_extremes surface_extremes);
