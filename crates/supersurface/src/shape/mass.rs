@@ -54,7 +54,7 @@ pub struct MassEstimate {
     /// The mass properties.
     pub mass: Mass,
     /// Estimated relative error, no bound: the largest of those of the mass, of the centre (in units of the radius of
-    /// gyration) and of the inertia (in units of its trace). 0 for closed forms.
+    /// gyration) and of the inertia (in units of its trace). 0 for closed forms, infinite where a number overflows.
     pub error: f64,
 }
 
@@ -70,8 +70,7 @@ impl MassEstimate {
         let mut error = 0.0;
         let mut add = |difference: f64, size: f64| {
             let share = if difference == 0.0 { 0.0 } else { difference / size };
-            // NaN counts as the largest
-            error = crate::numeric::powers::larger(share, error);
+            error = if share.is_nan() { f64::INFINITY } else { share.max(error) };
         };
         add((fine.mass - coarse.mass).abs(), mass);
         // tr I = 2 m k²

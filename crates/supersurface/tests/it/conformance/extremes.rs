@@ -3,7 +3,7 @@
 
 use supersurface::measure::{NearestFinder, first_hit};
 use supersurface::numeric::random::Stream;
-use supersurface::shape::{Implicit, Parametric, Ray, SecondOrder, SupportMap};
+use supersurface::shape::{Implicit, MassProperties, Parametric, Ray, SecondOrder, SupportMap};
 use supersurface::{Direction, Point, Vector};
 
 use super::members::Make;
@@ -173,5 +173,14 @@ pub(super) fn support_extremes<S: SupportMap>(make: Make<S>) {
             let s = shape.support_point(&n);
             assert!(!finite(n.iter()) || finite(s.iter()), "{n}: {s}");
         }
+    }
+}
+
+/// The error of a mass is a number, for solids of any size.
+pub(super) fn mass_extremes<S: MassProperties>(make: Make<S>) {
+    for shape in all_sizes(make, 8) {
+        let found = shape.mass_estimate(700.0);
+        assert!(found.error >= 0.0, "{found:?}");
+        assert!(found.error.is_infinite() || found.mass.mass >= 0.0, "{found:?}");
     }
 }
