@@ -21,7 +21,7 @@ const CELLS: usize = 96;
 pub(crate) struct InfoArgs {
     #[command(flatten)]
     which: ShapeArgs,
-    /// Density in kg/m³.
+    /// Density in kg/m³; the parts of an assembly have their own.
     #[arg(long, value_name = "RHO", default_value_t = 1000.0)]
     density: f64,
     /// Print as JSON.
@@ -40,10 +40,18 @@ struct Facts {
 
 /// Mass properties and how they came about.
 struct Weighed {
+    /// In m³; of an assembly the sum of its parts.
+    volume: f64,
     mass: Mass,
     /// Estimated relative error.
     error: f64,
     how: &'static str,
+}
+
+impl Weighed {
+    fn exact(mass: Mass, density: f64) -> Self {
+        Self { volume: mass.mass / density, mass, error: 0.0, how: "closed form" }
+    }
 }
 
 /// Prints the facts.
@@ -53,7 +61,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("--density: {given} is not positive and finite")));
     }
     let facts = facts(&args.which.name(), &args.which.model()?, args.density)?;
-    print(&if args.json { as_json(&facts, args.density) } else { as_text(&facts, args.density) })
+    print(&if args.json { as_json(&facts) } else { as_text(&facts) })
 }
 
 fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
@@ -88,7 +96,7 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
     };
     let bounded = bounds.is_none_or(|b| b.iter().all(|p| p.iter().all(|v| v.is_finite())));
     let mass = match (exact, model) {
-        (Some(mass), _) => Some(Weighed { mass, error: 0.0, how: "closed form" }),
+        (Some(mass), _) => Some(Weighed::exact(mass, density)),
         (None, Model::Assembly(assembly)) => {
             let mut sum: Option<Weighed> = None;
             let poses = assembly.poses(&assembly.rest_rotations());
@@ -102,7 +110,7 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         (None, Model::Quadric(quadric)) => match quadric.as_ellipsoid() {
             Some(e) => {
                 let mass = e.shape().mass_properties(density).moved(e.pose());
-                Some(Weighed { mass, error: 0.0, how: "closed form" })
+                Some(Weighed::exact(mass, density))
             }
             None => None,
         },
@@ -119,6 +127,7 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
     Some(match sum {
         None => Weighed { mass: moved, ..part },
         Some(sum) => Weighed {
+            volume: sum.volume + part.volume,
             mass: sum.mass.joined(&moved),
             error: sum.error.max(part.error),
             how: if sum.how == part.how { part.how } else { "partly of meshes" },
@@ -136,10 +145,15 @@ fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Option<Weighed>,
         Model::Combined(s) => mass_of_solid(s, density, CELLS).map_err(|e| told(&e))?,
         Model::Quadric(_) | Model::Assembly(_) => return Ok(None),
     };
-    Ok(Some(Weighed { mass: found.mass, error: found.error, how: "of meshes" }))
+    Ok(Some(Weighed {
+        volume: found.mass.mass / density,
+        mass: found.mass,
+        error: found.error,
+        how: "of meshes",
+    }))
 }
 
-fn as_text(facts: &Facts, density: f64) -> String {
+fn as_text(facts: &Facts) -> String {
     let mut out = format!("{}\n", facts.name);
     let mut line = |what: &str, value: String| {
         // writing to a string does not fail
@@ -161,8 +175,8 @@ fn as_text(facts: &Facts, density: f64) -> String {
     if let Some(convex) = facts.convex {
         line("convex", if convex { "yes".into() } else { "not known to be".into() });
     }
-    if let Some(Weighed { mass, error, how }) = &facts.mass {
-        line("volume", format!("{:.6e} m³ ({how}{})", mass.mass / density, about(*error)));
+    if let Some(Weighed { volume, mass, error, how }) = &facts.mass {
+        line("volume", format!("{volume:.6e} m³ ({how}{})", about(*error)));
         line("mass", format!("{} kg", short(mass.mass)));
         line("centre of mass", row(&mass.centre.coords));
         let moments = principal(&mass.inertia);
@@ -171,15 +185,14 @@ fn as_text(facts: &Facts, density: f64) -> String {
     out
 }
 
-fn as_json(facts: &Facts, density: f64) -> String {
+fn as_json(facts: &Facts) -> String {
     let point = |p: &Point| json!(finite(&p.coords));
     let mut value = json!({
         "name": facts.name,
         "bounds": facts.bounds.map(|[low, high]| json!({"low": point(&low), "high": point(&high)})),
         "convex": facts.convex,
         "mass": facts.mass.as_ref().map(|w| json!({
-            "density": density,
-            "volume": w.mass.mass / density,
+            "volume": w.volume,
             "mass": w.mass.mass,
             "centre": point(&w.mass.centre),
             "inertia": (0..3).map(|i| finite(&w.mass.inertia.column(i).into_owned())).collect::<Vec<_>>(),

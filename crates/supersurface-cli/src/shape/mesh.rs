@@ -39,7 +39,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<(), Failure> {
         true => json(&made.mesh, made.distance),
         false => {
             let near = match made.distance {
-                Some(d) => format!("within {:.3} mm of the surface", 1e3 * d),
+                Some(d) => format!("within {:.3e} m of the surface", d),
                 None => "marched: edges are cut by up to a cell".into(),
             };
             format!(
