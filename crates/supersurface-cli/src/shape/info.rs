@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
-use supersurface::mesh::{mass_of_solid, mass_of_surface};
+use supersurface::mesh::mass_of_solid;
 use supersurface::nalgebra::Matrix3;
-use supersurface::shape::{Implicit, Mass, MassProperties};
+use supersurface::shape::{Implicit, Mass, MassEstimate, MassProperties};
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::Model;
 
@@ -48,12 +48,6 @@ struct Weighed {
     how: &'static str,
 }
 
-impl Weighed {
-    fn exact(mass: Mass, density: f64) -> Self {
-        Self { volume: mass.mass / density, mass, error: 0.0, how: "closed form" }
-    }
-}
-
 /// Prints the facts.
 pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
     if !(args.density > 0.0 && args.density.is_finite()) {
@@ -66,16 +60,18 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
     let mut notes = Vec::new();
-    let (kind, bounds, convex, exact) = match model {
+    let (kind, bounds, convex, own) = match model {
         Model::Solid(solid) => {
-            let exact = solid.shape().as_mass_properties();
-            let exact = exact.map(|m| m.mass_properties(density).moved(solid.pose()));
-            (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), exact)
+            let mass = Some(weighed(solid.mass_estimate(density), density));
+            (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), mass)
         }
         Model::Implicit(kind, solid) => {
             ((*kind).to_owned(), Some(solid.bounds()), Some(solid.is_convex()), None)
         }
-        Model::Extended(_) => ("extended superellipsoid".into(), None, None, None),
+        Model::Extended(solid) => {
+            let mass = Some(weighed(solid.mass_estimate(density), density));
+            ("extended superellipsoid".into(), None, None, mass)
+        }
         Model::Combined(solid) => {
             notes.push(("solids", solid.leaves().to_string()));
             ("combination".into(), Some(solid.bounds()), Some(solid.is_convex()), None)
@@ -95,8 +91,8 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         }
     };
     let bounded = bounds.is_none_or(|b| b.iter().all(|p| p.iter().all(|v| v.is_finite())));
-    let mass = match (exact, model) {
-        (Some(mass), _) => Some(Weighed::exact(mass, density)),
+    let mass = match (own, model) {
+        (Some(mass), _) => Some(mass),
         (None, Model::Assembly(assembly)) => {
             let mut sum: Option<Weighed> = None;
             let poses = assembly.poses(&assembly.rest_rotations());
@@ -107,17 +103,20 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
             }
             sum
         }
-        (None, Model::Quadric(quadric)) => match quadric.as_ellipsoid() {
-            Some(e) => {
-                let mass = e.shape().mass_properties(density).moved(e.pose());
-                Some(Weighed::exact(mass, density))
-            }
-            None => None,
-        },
-        (None, _) if bounded => of_meshes(name, model, density)?,
+        (None, Model::Quadric(quadric)) => {
+            quadric.as_ellipsoid().map(|e| weighed(e.mass_estimate(density), density))
+        }
+        (None, Model::Implicit(_, s)) if bounded => Some(of_meshes(name, s, density)?),
+        (None, Model::Combined(s)) if bounded => Some(of_meshes(name, s, density)?),
         (None, _) => None,
     };
     Ok(Facts { name: kind, bounds, convex, mass, notes })
+}
+
+/// From the library's own answer.
+fn weighed(found: MassEstimate, density: f64) -> Weighed {
+    let how = if found.error == 0.0 { "closed form" } else { "by integration" };
+    Weighed { volume: found.mass.mass / density, mass: found.mass, error: found.error, how }
 }
 
 /// Two weighed parts as one; the second stands at a pose.
@@ -130,27 +129,16 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
             volume: sum.volume + part.volume,
             mass: sum.mass.joined(&moved),
             error: sum.error.max(part.error),
-            how: if sum.how == part.how { part.how } else { "partly of meshes" },
+            how: if sum.how == part.how { part.how } else { "partly by integration" },
         },
     })
 }
 
 /// Of two meshes.
-fn of_meshes(name: &str, model: &Model, density: f64) -> Result<Option<Weighed>, Failure> {
-    let told = |e: &dyn std::fmt::Display| Failure::input(format!("{name}: {e}"));
-    let found = match model {
-        Model::Solid(s) => mass_of_surface(s, density, None).map_err(|e| told(&e))?,
-        Model::Extended(s) => mass_of_surface(s, density, None).map_err(|e| told(&e))?,
-        Model::Implicit(_, s) => mass_of_solid(s, density, CELLS).map_err(|e| told(&e))?,
-        Model::Combined(s) => mass_of_solid(s, density, CELLS).map_err(|e| told(&e))?,
-        Model::Quadric(_) | Model::Assembly(_) => return Ok(None),
-    };
-    Ok(Some(Weighed {
-        volume: found.mass.mass / density,
-        mass: found.mass,
-        error: found.error,
-        how: "of meshes",
-    }))
+fn of_meshes(name: &str, solid: &(impl Implicit + Sync), density: f64) -> Result<Weighed, Failure> {
+    let found = mass_of_solid(solid, density, CELLS);
+    let found = found.map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    Ok(Weighed { how: "of meshes", ..weighed(found, density) })
 }
 
 fn as_text(facts: &Facts) -> String {

@@ -1,7 +1,9 @@
 //! Floor 6: several solids as one, by Boolean operations or by joints.
 
 mod assembly;
+mod bounds;
 mod overlap;
+mod program;
 pub mod rfunction;
 mod solid;
 

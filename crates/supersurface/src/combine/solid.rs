@@ -4,66 +4,18 @@
 //! ([`super::rfunction`]), and the gauge of the whole is `1 - f`. Only its surface `g = 1` is exact: away from
 //! it a combined gauge is no distance. Gradients follow by the chain rule.
 //!
-//! The tree is kept as a program in postfix order, and of two operands the one that needs more stack comes
-//! first (Sethi and Ullman 1970). A tree of n leaves then needs at most `1 + log2 n` values at a time, so that a
-//! fixed array will do for any tree and nothing recurses.
+//! The tree is a [`Program`], so that neither depth nor width costs anything but time.
 
 use std::fmt;
+use std::sync::Arc;
 
-use super::rfunction::{self, Alpha, Blend};
+use super::bounds;
+use super::program::{Join, Kind, Program, Step, leaf_value};
+use super::rfunction::{Alpha, Blend};
 use crate::shape::Implicit;
 use crate::{Point, Vector};
 
-/// Values that a program may hold at a time: enough for 2^63 leaves.
-const STACK: usize = 64;
-
-type Leaf = Box<dyn Implicit + Send + Sync>;
-
-enum Step {
-    Leaf(Leaf),
-    Complement,
-    /// Combines the two values on top of the stack.
-    Join(Join),
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Join {
-    kind: Kind,
-    alpha: Alpha,
-    blend: Option<Blend>,
-    /// The second operand lies under the first.
-    swapped: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Union,
-    Intersection,
-    Difference,
-}
-
-impl Join {
-    /// Operands in their order, from the stack's.
-    fn ordered<T>(&self, lower: T, upper: T) -> (T, T) {
-        if self.swapped { (upper, lower) } else { (lower, upper) }
-    }
-
-    fn apply(&self, f1: f64, f2: f64) -> (f64, [f64; 2]) {
-        let (mut value, mut slopes) = match self.kind {
-            Kind::Union => rfunction::union(f1, f2, self.alpha),
-            Kind::Intersection => rfunction::intersection(f1, f2, self.alpha),
-            Kind::Difference => rfunction::difference(f1, f2, self.alpha),
-        };
-        if let Some(blend) = self.blend {
-            let (added, turned) = blend.displacement(f1, f2);
-            value += added;
-            slopes = [slopes[0] + turned[0], slopes[1] + turned[1]];
-        }
-        (value, slopes)
-    }
-}
-
-/// A Boolean combination of solids, itself a solid.
+/// A Boolean combination of solids, itself a solid; a copy shares them.
 ///
 /// ```
 /// use supersurface::{Point, combine::{Alpha, CombinedSolid}};
@@ -76,15 +28,15 @@ impl Join {
 /// assert!(bead.contains(&Point::new(0.03, 0.0, 0.0)));
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
+#[derive(Clone)]
 pub struct CombinedSolid {
-    program: Vec<Step>,
-    need: usize,
+    program: Program,
 }
 
 impl CombinedSolid {
     /// One solid alone.
     pub fn new(shape: impl Implicit + Send + Sync + 'static) -> Self {
-        Self { program: vec![Step::Leaf(Box::new(shape))], need: 1 }
+        Self { program: Program::leaf(Arc::new(shape)) }
     }
 
     /// What is in either.
@@ -119,103 +71,24 @@ impl CombinedSolid {
 
     /// Everything outside.
     #[must_use]
-    pub fn complement(mut self) -> Self {
-        self.program.push(Step::Complement);
-        self
+    pub fn complement(self) -> Self {
+        Self { program: self.program.complemented() }
     }
 
     /// Number of solids that it is made of.
     pub fn leaves(&self) -> usize {
-        self.program.iter().filter(|s| matches!(s, Step::Leaf(_))).count()
+        self.program.steps().iter().filter(|s| matches!(s, Step::Leaf(_))).count()
     }
 
     fn join(self, other: Self, kind: Kind, alpha: Alpha, blend: Option<Blend>) -> Self {
-        let swapped = other.need > self.need;
-        let need = if self.need == other.need { self.need + 1 } else { self.need.max(other.need) };
-        let (mut program, after) =
-            if swapped { (other.program, self.program) } else { (self.program, other.program) };
-        program.extend(after);
-        program.push(Step::Join(Join { kind, alpha, blend, swapped }));
-        Self { program, need }
-    }
-
-    /// Runs the program: `leaf` gives the value of a solid, `flip` that of a complement, `join` that of two
-    /// operands in their order.
-    fn run<T: Copy>(
-        &self,
-        start: T,
-        leaf: impl Fn(&Leaf) -> T,
-        flip: impl Fn(T) -> T,
-        join: impl Fn(&Join, T, T) -> T,
-    ) -> T {
-        let mut stack = [start; STACK];
-        let mut top = 0;
-        for step in &self.program {
-            let value = match step {
-                Step::Leaf(shape) => leaf(shape),
-                Step::Complement => {
-                    top -= 1;
-                    flip(at(&stack, top))
-                }
-                Step::Join(operation) => {
-                    top -= 2;
-                    let (first, second) = operation.ordered(at(&stack, top), at(&stack, top + 1));
-                    join(operation, first, second)
-                }
-            };
-            if let Some(place) = stack.get_mut(top) {
-                *place = value;
-            }
-            top += 1;
-        }
-        at(&stack, 0)
+        let join = Join::new(kind, alpha, blend);
+        Self { program: self.program.joined(other.program, join) }
     }
 
     /// The value f: positive inside, 0 on the surface, negative outside, `1 - g` at the leaves.
     pub fn value(&self, p: &Point) -> f64 {
-        self.run(0.0, |shape| leaf_value(shape, p), |f| -f, |o, f1, f2| o.apply(f1, f2).0)
+        self.program.run(0.0, |shape| leaf_value(shape, p), |f| -f, |o, f1, f2| o.apply(f1, f2).0)
     }
-
-    /// For each solid, in the program's order, how much under 0 its value may be where that of the whole is
-    /// not negative; `None` under a complement, where nothing bounds it.
-    ///
-    /// From `f >= -δ` follows, for a blend that adds a0, `>= -(δ + a0)` of the operation alone; for `∧` the same
-    /// of both operands, since `f1 ∧ f2 <= min(f1, f2)`; for `∨` `-δ (1 + √((1-α)/2))` of one of them, since of
-    /// two negative values `|f1 ∨ f2|` is at least the smaller amount divided by that.
-    fn slack(&self) -> Vec<Option<f64>> {
-        let mut slack = Vec::new();
-        let mut open = vec![Some(0.0)];
-        for step in self.program.iter().rev() {
-            let own = open.pop().flatten();
-            match step {
-                Step::Leaf(_) => slack.push(own),
-                Step::Complement => open.push(None),
-                Step::Join(join) => {
-                    let added = join.blend.map_or(0.0, |b| b.amount().max(0.0));
-                    let own = own.map(|d| d + added);
-                    let spread = 1.0 + (0.5 * (1.0 - join.alpha.value())).sqrt();
-                    let (first, second) = match join.kind {
-                        Kind::Union => (own.map(|d| d * spread), own.map(|d| d * spread)),
-                        Kind::Intersection => (own, own),
-                        Kind::Difference => (own, None),
-                    };
-                    let (lower, upper) = join.ordered(first, second);
-                    open.extend([lower, upper]);
-                }
-            }
-        }
-        slack.reverse();
-        slack
-    }
-}
-
-/// `1 - g` of a leaf.
-fn leaf_value(shape: &Leaf, p: &Point) -> f64 {
-    rfunction::clamped(1.0 - shape.gauge(p))
-}
-
-fn at<T: Copy>(stack: &[T; STACK], place: usize) -> T {
-    stack[place.min(STACK - 1)]
 }
 
 impl fmt::Debug for CombinedSolid {
@@ -233,7 +106,7 @@ impl Implicit for CombinedSolid {
     /// By the chain rule. Where two surfaces cross it is the mean of theirs, up to signs; there a smooth union has
     /// no gradient.
     fn gradient(&self, p: &Point) -> Vector {
-        let (_, slope) = self.run(
+        let (_, slope) = self.program.run(
             (0.0, Vector::zeros()),
             |shape| (leaf_value(shape, p), -shape.gradient(p)),
             |(f, slope)| (-f, -slope),
@@ -245,61 +118,19 @@ impl Implicit for CombinedSolid {
         -slope
     }
 
-    /// Unions join boxes, intersections and differences cut them; a complement has no box.
-    ///
-    /// A blend that adds material needs the boxes of its operands' `g = 1 + δ`. A box is then widened about its
-    /// middle by `1 + 2δ`, which is enough for gauges that grow at least in proportion to the distance from a
-    /// point of the box (all of this library's but deformed ones far from their surface).
+    /// Infinite for a complement; for blends a little wide.
     fn bounds(&self) -> [Point; 2] {
-        let everything = [Vector::repeat(f64::NEG_INFINITY), Vector::repeat(f64::INFINITY)];
-        let mut slack = self.slack().into_iter();
-        let mut stack: Vec<[Vector; 2]> = Vec::with_capacity(self.need);
-        for step in &self.program {
-            let found = match step {
-                Step::Leaf(shape) => match slack.next().flatten() {
-                    Some(by) => widened(shape.bounds(), by),
-                    None => everything,
-                },
-                Step::Complement => {
-                    stack.pop();
-                    everything
-                }
-                Step::Join(join) => {
-                    let (upper, lower) = (stack.pop(), stack.pop());
-                    let (first, second) =
-                        join.ordered(lower.unwrap_or(everything), upper.unwrap_or(everything));
-                    match join.kind {
-                        Kind::Union => [first[0].inf(&second[0]), first[1].sup(&second[1])],
-                        Kind::Intersection => [first[0].sup(&second[0]), first[1].inf(&second[1])],
-                        Kind::Difference => first,
-                    }
-                }
-            };
-            stack.push(found);
-        }
-        let [low, high] = stack.pop().unwrap_or(everything);
-        // boxes that do not meet: an empty one
-        let high = high.sup(&low);
-        [low.into(), high.into()]
+        bounds::bounds(&self.program)
     }
 
     /// True for intersections of convex solids without blends: `f1 ∧ f2` is concave and grows with both.
     fn is_convex(&self) -> bool {
-        self.program.iter().all(|step| match step {
+        self.program.steps().iter().all(|step| match step {
             Step::Leaf(shape) => shape.is_convex(),
             Step::Complement => false,
             Step::Join(join) => join.kind == Kind::Intersection && join.blend.is_none(),
         })
     }
-}
-
-/// A box widened about its middle by `1 + 2δ`.
-fn widened([low, high]: [Point; 2], by: f64) -> [Vector; 2] {
-    if by == 0.0 || !(high - low).iter().all(|v| v.is_finite()) {
-        return [low.coords, high.coords];
-    }
-    let more = (high - low) * by;
-    [low.coords - more, high.coords + more]
 }
 
 #[cfg(test)]
@@ -406,7 +237,7 @@ mod tests {
         let n = 3000;
         let left = (1..n).fold(at(0), |tree, i| tree.union(at(i), Alpha::EXACT));
         let right = (1..n).fold(at(0), |tree, i| at(i).union(tree, Alpha::EXACT));
-        assert_eq!((left.leaves(), left.need, right.need), (n, 2, 2));
+        assert_eq!((left.leaves(), left.program.need(), right.program.need()), (n, 2, 2));
         let mut level: Vec<CombinedSolid> = (0..n).map(at).collect();
         while level.len() > 1 {
             let mut next = Vec::new();
@@ -420,7 +251,7 @@ mod tests {
             level = next;
         }
         let balanced = level.pop().unwrap();
-        assert!(balanced.need <= 13);
+        assert!(balanced.program.need() <= 13);
         for p in [[7.03, 0.02, 0.01], [-1.0, 0.0, 0.0], [200.0, 0.0, 0.0]] {
             let p = Point::from(p);
             let g = balanced.gauge(&p);

@@ -18,6 +18,7 @@
 mod bend;
 mod cavity;
 mod deformed;
+mod mass;
 mod pull_back;
 mod shear_bend;
 mod taper;

@@ -3,60 +3,34 @@
 //! For a tetrahedron with the corners 0, a, b, c: `V = a·(b × c)/6`, first moment `V s/4` and second moment
 //! `V (aaᵀ + bbᵀ + ccᵀ + ssᵀ)/20` with `s = a + b + c`.
 
-use nalgebra::Matrix3;
-
 use super::{MarchError, MarchOptions, Mesh, Resolution, TessellateError, march, tessellate};
-use crate::shape::{Implicit, Mass, MassProperties, Parametric};
-use crate::{Point, Vector};
+use crate::shape::{Implicit, Mass, MassEstimate, MassProperties, Moments, Parametric};
 
 impl MassProperties for Mesh {
     /// Of the polyhedron itself: exact for the mesh, near those of the surface that it was made of. They mean something
     /// where the mesh is watertight; a mesh without volume has its centre of mass at the origin.
     fn mass_properties(&self, density: f64) -> Mass {
-        let nothing = Mass { mass: 0.0, centre: Point::origin(), inertia: Matrix3::zeros() };
         // near the mesh, so that little cancels
-        let Some(origin) = self.vertices().first() else { return nothing };
-        let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix3::zeros());
+        let Some(origin) = self.vertices().first() else { return Moments::nothing().mass(density) };
+        let mut sum = Moments::nothing();
         for corners in self.corners() {
             let [a, b, c] = corners.map(|p| p - origin);
             let (part, s) = (a.dot(&b.cross(&c)) / 6.0, a + b + c);
-            volume += part;
-            first += s * (part / 4.0);
+            sum.volume += part;
+            sum.first += s * (part / 4.0);
             let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
-            second += (squares + s * s.transpose()) * (part / 20.0);
+            sum.second += (squares + s * s.transpose()) * (part / 20.0);
         }
-        if volume == 0.0 || !volume.is_finite() {
-            return nothing;
+        if sum.volume == 0.0 || !sum.volume.is_finite() {
+            return Moments::nothing().mass(density);
         }
-        let middle = first / volume;
-        let central = second - middle * middle.transpose() * volume;
-        let inertia = Matrix3::identity() * central.trace() - central;
-        Mass { mass: density * volume, centre: origin + middle, inertia: inertia * density }
+        sum.mass(density).moved(&origin.coords.into())
     }
 }
 
-/// Mass properties that are not known in closed form, with an estimate of their error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct EstimatedMass {
-    /// Of the finer of two meshes.
-    pub mass: Mass,
-    /// The largest of what the coarser mesh differs by: in its volume and its inertia relatively, in its centre over the
-    /// radius of gyration. The finer one is nearer by about a factor of four.
-    pub error: f64,
-}
-
-impl EstimatedMass {
-    fn of_meshes(coarse: &Mesh, fine: &Mesh, density: f64) -> Self {
-        let (mass, other) = (fine.mass_properties(density), coarse.mass_properties(density));
-        let gyration = (mass.inertia.trace() / (2.0 * mass.mass)).sqrt();
-        let error = [
-            other.mass / mass.mass - 1.0,
-            (other.inertia - mass.inertia).norm() / mass.inertia.norm(),
-            (other.centre - mass.centre).norm() / gyration,
-        ];
-        Self { mass, error: error.into_iter().map(f64::abs).fold(0.0, f64::max) }
-    }
+/// Of the finer of two meshes: it is nearer than the error says, by about a factor of four.
+fn of_meshes(coarse: &Mesh, fine: &Mesh, density: f64) -> MassEstimate {
+    MassEstimate::refined(&coarse.mass_properties(density), fine.mass_properties(density))
 }
 
 /// Mass properties of the solid in a closed surface, for a density in kg/m³, by meshes within `tolerance` metres (`None`
@@ -76,10 +50,10 @@ pub fn mass_of_surface<S: Parametric + ?Sized>(
     surface: &S,
     density: f64,
     tolerance: Option<f64>,
-) -> Result<EstimatedMass, TessellateError> {
+) -> Result<MassEstimate, TessellateError> {
     let coarse = tessellate(surface, tolerance)?;
     let fine = tessellate(surface, Some(coarse.tolerance / 4.0))?;
-    Ok(EstimatedMass::of_meshes(&coarse.mesh, &fine.mesh, density))
+    Ok(of_meshes(&coarse.mesh, &fine.mesh, density))
 }
 
 /// Mass properties of a bounded implicit solid, for a density in kg/m³, marched with `cells` along its longest side and
@@ -88,12 +62,12 @@ pub fn mass_of_solid<S: Implicit + Sync + ?Sized>(
     solid: &S,
     density: f64,
     cells: usize,
-) -> Result<EstimatedMass, MarchError> {
+) -> Result<MassEstimate, MarchError> {
     let marched = |cells| {
         let resolution = Resolution::Count(cells);
         march(solid, &MarchOptions { resolution, ..MarchOptions::default() })
     };
-    Ok(EstimatedMass::of_meshes(&marched(cells / 2)?, &marched(cells)?, density))
+    Ok(of_meshes(&marched(cells / 2)?, &marched(cells)?, density))
 }
 
 #[cfg(test)]

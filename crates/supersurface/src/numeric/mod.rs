@@ -1,6 +1,7 @@
 //! Floor 1: the small mathematics that every shape is made of.
 
 pub mod dirichlet;
+pub mod gauss;
 pub mod lanes;
 pub mod powers;
 pub mod quarter_angle;

@@ -44,23 +44,29 @@ impl Spline {
         Self { from, spacing, knots, periodic: true }
     }
 
-    /// Value and slope at `t`. Outside of its interval a natural spline goes on straight; at a `t` that is
-    /// not finite it has the first value.
+    /// Value and slope at `t`, as [`Self::derivatives`] says them.
     pub fn value_and_slope(&self, t: f64) -> [f64; 2] {
+        let [value, slope, _] = self.derivatives(t);
+        [value, slope]
+    }
+
+    /// Value, slope and second derivative at `t`. Outside of its interval a natural spline goes on straight; at a
+    /// `t` that is not finite it has the first value.
+    pub fn derivatives(&self, t: f64) -> [f64; 3] {
         let [first, .., last] = self.knots.as_slice() else {
-            return [self.knots.first().map_or(0.0, |k| k[0]), 0.0];
+            return [self.knots.first().map_or(0.0, |k| k[0]), 0.0, 0.0];
         };
         let intervals = self.knots.len() - 1;
         let mut u = (t - self.from) / self.spacing;
         if !u.is_finite() {
-            return [first[0], 0.0];
+            return [first[0], 0.0, 0.0];
         }
         if self.periodic {
             u = u.rem_euclid(intervals as f64);
         }
         let j = (u.max(0.0) as usize).min(intervals - 1);
         let (Some(left), Some(right)) = (self.knots.get(j), self.knots.get(j + 1)) else {
-            return [last[0], 0.0];
+            return [last[0], 0.0, 0.0];
         };
         let b = (u - j as f64).clamp(0.0, 1.0);
         let a = 1.0 - b;
@@ -70,7 +76,11 @@ impl Spline {
         let bent = (3.0 * b * b - 1.0) * right[1] - (3.0 * a * a - 1.0) * left[1];
         let slope = (right[0] - left[0]) / h + bent * h / 6.0;
         let beyond = (u - j as f64 - b) * h;
-        [if beyond == 0.0 { value } else { value + slope * beyond }, slope]
+        if beyond == 0.0 {
+            [value, slope, a * left[1] + b * right[1]]
+        } else {
+            [value + slope * beyond, slope, 0.0]
+        }
     }
 
     /// Number of values that it was made from.

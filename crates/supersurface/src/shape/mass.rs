@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::{Point, Pose};
+use crate::{Point, Pose, Vector};
 
 /// How heavy a solid is, and how its mass is spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,10 +48,80 @@ impl Mass {
     }
 }
 
+/// Mass properties with how far off they may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassEstimate {
+    /// The mass properties.
+    pub mass: Mass,
+    /// Estimated relative error, no bound: the largest of those of the mass, of the centre (in units of the radius of
+    /// gyration) and of the inertia (in units of its trace). 0 for closed forms.
+    pub error: f64,
+}
+
+impl MassEstimate {
+    /// Of a closed form.
+    pub const fn exact(mass: Mass) -> Self {
+        Self { mass, error: 0.0 }
+    }
+
+    /// The finer of two estimates, with what they differ by as its error.
+    pub fn refined(coarse: &Mass, fine: Mass) -> Self {
+        let (mass, trace) = (fine.mass.abs(), fine.inertia.trace().abs());
+        let mut error = 0.0;
+        let mut add = |difference: f64, size: f64| {
+            let share = if difference == 0.0 { 0.0 } else { difference / size };
+            // NaN counts as the largest
+            error = crate::numeric::powers::larger(share, error);
+        };
+        add((fine.mass - coarse.mass).abs(), mass);
+        // tr I = 2 m k²
+        add((fine.centre - coarse.centre).norm(), (0.5 * trace / mass).sqrt());
+        add((fine.inertia - coarse.inertia).amax(), trace);
+        Self { mass: fine, error }
+    }
+}
+
+/// Volume with its first and second moments about the origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moments {
+    pub(crate) volume: f64,
+    pub(crate) first: Vector,
+    pub(crate) second: Matrix3<f64>,
+}
+
+impl Moments {
+    pub(crate) fn nothing() -> Self {
+        Self { volume: 0.0, first: Vector::zeros(), second: Matrix3::zeros() }
+    }
+
+    /// Adds a small volume at a place.
+    pub(crate) fn add(&mut self, volume: f64, at: &Vector) {
+        let first = at * volume;
+        self.volume += volume;
+        self.first += first;
+        self.second += first * at.transpose();
+    }
+
+    /// All of it so many times.
+    pub(crate) fn scaled(&self, by: f64) -> Self {
+        Self { volume: self.volume * by, first: self.first * by, second: self.second * by }
+    }
+
+    /// As a mass, with a density; at the origin where there is no volume.
+    pub(crate) fn mass(&self, density: f64) -> Mass {
+        if self.volume == 0.0 {
+            return Mass { mass: 0.0, centre: Point::origin(), inertia: Matrix3::zeros() };
+        }
+        let centre = self.first / self.volume;
+        let central = self.second - centre * centre.transpose() * self.volume;
+        let inertia = Matrix3::identity() * central.trace() - central;
+        Mass { mass: self.volume * density, centre: centre.into(), inertia: inertia * density }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vector;
 
     #[test]
     fn two_halves_of_a_rod_are_the_rod() {

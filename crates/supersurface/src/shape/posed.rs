@@ -4,8 +4,8 @@ use nalgebra::Matrix3;
 
 use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
-    Implicit, InvalidShape, Mass, MassProperties, Parametric, SecondOrder, SupportMap,
-    finite_or_zero,
+    Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, SecondOrder,
+    SupportMap, finite_or_zero,
 };
 use crate::{Direction, Point, Pose, Vector};
 
@@ -119,6 +119,11 @@ impl<S: Parametric> Parametric for Posed<S> {
 impl<S: MassProperties> MassProperties for Posed<S> {
     fn mass_properties(&self, density: f64) -> Mass {
         self.shape.mass_properties(density).moved(&self.pose)
+    }
+
+    fn mass_estimate(&self, density: f64) -> MassEstimate {
+        let found = self.shape.mass_estimate(density);
+        MassEstimate { mass: found.mass.moved(&self.pose), ..found }
     }
 }
 

@@ -8,9 +8,10 @@ use nalgebra::Matrix3;
 use super::supercylinder::{base_moments, rim_support};
 use crate::numeric::powers::larger;
 use crate::numeric::superellipse::norm;
+use crate::shape::filled::{Bits, eighth};
 use crate::shape::jet::Jet;
 use crate::shape::superellipsoid::{check_axes, check_exponents};
-use crate::shape::{Implicit, InvalidShape, Mass, MassProperties, SecondOrder, SupportMap};
+use crate::shape::{Filled, Implicit, InvalidShape, Mass, MassProperties, SecondOrder, SupportMap};
 use crate::{Point, Vector};
 
 /// A supercone about the middle of its height, apex towards +z.
@@ -99,6 +100,30 @@ impl Implicit for Supercone {
 impl SecondOrder for Supercone {
     fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
         self.jet(p).hessian()
+    }
+}
+
+/// By lines from the axis at the height `a3 (2t - 1)`: the volume element is `2 a1 a2 a3 (1 - t)² r ds dt dr / n(s)²`.
+impl Filled for Supercone {
+    fn pieces(&self) -> usize {
+        8
+    }
+
+    fn along(
+        &self,
+        piece: usize,
+        [s, t]: [f64; 2],
+        shares: &[f64],
+        each: &mut dyn FnMut(Point, f64),
+    ) {
+        let [a1, a2, a3] = self.semi_axes;
+        let ([x, y], turn) = eighth(&mut Bits::of(piece), s, 2.0 / self.exponent);
+        let width = 1.0 - t;
+        let volume = 2.0 * a1 * a2 * a3 * width * width * turn;
+        for r in shares {
+            let rho = r * width;
+            each(Point::new(a1 * rho * x, a2 * rho * y, a3 * (2.0 * t - 1.0)), volume * r);
+        }
     }
 }
 

@@ -7,9 +7,10 @@ use nalgebra::Matrix3;
 use crate::numeric::dirichlet::dirichlet;
 use crate::numeric::powers::larger;
 use crate::numeric::superellipse::norm;
+use crate::shape::filled::{Bits, eighth};
 use crate::shape::jet::Jet;
 use crate::shape::superellipsoid::{Superellipsoid, check_axes, check_exponents};
-use crate::shape::{Implicit, InvalidShape, Mass, MassProperties, SecondOrder, SupportMap};
+use crate::shape::{Filled, Implicit, InvalidShape, Mass, MassProperties, SecondOrder, SupportMap};
 use crate::{Point, Vector};
 
 /// A supercylinder about its own origin, z along its axis.
@@ -101,6 +102,28 @@ impl Implicit for Supercylinder {
 impl SecondOrder for Supercylinder {
     fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
         self.jet(p).hessian()
+    }
+}
+
+/// By lines from the axis at the height `a3 (2t - 1)`: the volume element is `2 a1 a2 a3 r ds dt dr / n(s)²`.
+impl Filled for Supercylinder {
+    fn pieces(&self) -> usize {
+        8
+    }
+
+    fn along(
+        &self,
+        piece: usize,
+        [s, t]: [f64; 2],
+        shares: &[f64],
+        each: &mut dyn FnMut(Point, f64),
+    ) {
+        let [a1, a2, a3] = self.semi_axes;
+        let ([x, y], turn) = eighth(&mut Bits::of(piece), s, 2.0 / self.exponent);
+        let volume = 2.0 * a1 * a2 * a3 * turn;
+        for r in shares {
+            each(Point::new(a1 * r * x, a2 * r * y, a3 * (2.0 * t - 1.0)), volume * r);
+        }
     }
 }
 

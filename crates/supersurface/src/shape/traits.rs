@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use nalgebra::Matrix3;
 
 use crate::numeric::quarter_angle::QuarterAngle;
-use crate::shape::Mass;
+use crate::shape::{Mass, MassEstimate};
 use crate::{Direction, Point, Vector};
 
 /// A solid given by a gauge: below 1 inside, 1 on the surface, above 1 outside.
@@ -133,8 +133,13 @@ pub trait SupportMap {
     }
 }
 
-/// A solid whose volume and moments are known.
+/// A solid whose volume and moments are known, in closed form or by integration.
 pub trait MassProperties {
     /// Mass, centre of mass and inertia for a uniform density in kg/m³.
     fn mass_properties(&self, density: f64) -> Mass;
+
+    /// The same with an estimate of the error, which is that of an integration; 0 for closed forms, up to rounding.
+    fn mass_estimate(&self, density: f64) -> MassEstimate {
+        MassEstimate::exact(self.mass_properties(density))
+    }
 }

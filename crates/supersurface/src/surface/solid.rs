@@ -5,9 +5,9 @@
 use crate::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use crate::numeric::quarter_angle::QuarterAngle;
 use crate::shape::{
-    Implicit, InvalidShape, MassProperties, Parametric, RadialExtended, SecondOrder,
-    SeparableSuperquadric, Supercone, Supercylinder, Superellipsoid, Supershape, Supertoroid,
-    SupportMap,
+    Filled, Implicit, InvalidShape, Mass, MassEstimate, MassProperties, Parametric, RadialExtended,
+    SecondOrder, SeparableSuperquadric, Supercone, Supercylinder, Superellipsoid, Supershape,
+    Supertoroid, SupportMap,
 };
 use crate::surface::Surface;
 use crate::{Direction, Point, Vector};
@@ -72,6 +72,30 @@ impl From<Surface> for Solid {
     }
 }
 
+/// What every variant answers, as one object.
+macro_rules! views {
+    ($($name:ident: $answer:ident,)+) => {
+        $(
+            fn $name(&self) -> &dyn $answer {
+                match self {
+                    Self::Superellipsoid(s) => s,
+                    Self::Supertoroid(s) => s,
+                    Self::Separable(s) => s,
+                    Self::Supercylinder(s) => s,
+                    Self::Supercone(s) => s,
+                    Self::Supershape(s) => &**s,
+                    Self::RadialExtended(s) => &**s,
+                    Self::Tapered(s) => &**s,
+                    Self::Twisted(s) => &**s,
+                    Self::Bent(s) => &**s,
+                    Self::ShearBent(s) => &**s,
+                    Self::Hollowed(s) => &**s,
+                }
+            }
+        )+
+    };
+}
+
 impl Solid {
     /// What it is, in words: the member of the family and what was done to it, in order.
     pub fn name(&self) -> String {
@@ -129,38 +153,11 @@ impl Solid {
         0.5 * (high.z - low.z)
     }
 
-    fn implicit(&self) -> &dyn Implicit {
-        match self {
-            Self::Superellipsoid(s) => s,
-            Self::Supertoroid(s) => s,
-            Self::Separable(s) => s,
-            Self::Supercylinder(s) => s,
-            Self::Supercone(s) => s,
-            Self::Supershape(s) => &**s,
-            Self::RadialExtended(s) => &**s,
-            Self::Tapered(s) => &**s,
-            Self::Twisted(s) => &**s,
-            Self::Bent(s) => &**s,
-            Self::ShearBent(s) => &**s,
-            Self::Hollowed(s) => &**s,
-        }
-    }
-
-    fn parametric(&self) -> &dyn Parametric {
-        match self {
-            Self::Superellipsoid(s) => s,
-            Self::Supertoroid(s) => s,
-            Self::Separable(s) => s,
-            Self::Supercylinder(s) => s,
-            Self::Supercone(s) => s,
-            Self::Supershape(s) => &**s,
-            Self::RadialExtended(s) => &**s,
-            Self::Tapered(s) => &**s,
-            Self::Twisted(s) => &**s,
-            Self::Bent(s) => &**s,
-            Self::ShearBent(s) => &**s,
-            Self::Hollowed(s) => &**s,
-        }
+    views! {
+        implicit: Implicit,
+        parametric: Parametric,
+        filled: Filled,
+        weighed: MassProperties,
     }
 
     /// Its support points, where they have a closed form.
@@ -175,19 +172,6 @@ impl Solid {
         }
     }
 
-    /// Its mass properties, where they have a closed form or a quadrature of their own.
-    pub fn as_mass_properties(&self) -> Option<&dyn MassProperties> {
-        match self {
-            Self::Superellipsoid(s) => Some(s),
-            Self::Supertoroid(s) => Some(s),
-            Self::Separable(s) => Some(s),
-            Self::Supercylinder(s) => Some(s),
-            Self::Supercone(s) => Some(s),
-            Self::Supershape(s) => Some(&**s),
-            _ => None,
-        }
-    }
-
     /// Its second derivatives, where there are formulas for them.
     pub fn as_second_order(&self) -> Option<&dyn SecondOrder> {
         match self {
@@ -197,8 +181,30 @@ impl Solid {
             Self::Supercylinder(s) => Some(s),
             Self::Supercone(s) => Some(s),
             Self::Supershape(s) => Some(&**s),
+            Self::RadialExtended(s) => Some(&**s),
             _ => None,
         }
+    }
+}
+
+impl Filled for Solid {
+    fn pieces(&self) -> usize {
+        self.filled().pieces()
+    }
+
+    fn along(&self, piece: usize, at: [f64; 2], shares: &[f64], each: &mut dyn FnMut(Point, f64)) {
+        self.filled().along(piece, at, shares, each);
+    }
+}
+
+/// In closed form for the members but the last two, by integration for these and for what is deformed.
+impl MassProperties for Solid {
+    fn mass_properties(&self, density: f64) -> Mass {
+        self.weighed().mass_properties(density)
+    }
+
+    fn mass_estimate(&self, density: f64) -> MassEstimate {
+        self.weighed().mass_estimate(density)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use supersurface::combine::{Assembly, Joint, JointKind, Part};
 use supersurface::nalgebra::{Matrix3, UnitQuaternion};
-use supersurface::shape::{Implicit, Mass, MassProperties, Posed, Superellipsoid};
+use supersurface::shape::{Implicit, Mass, MassEstimate, MassProperties, Posed, Superellipsoid};
 use supersurface::{Point, Pose, Vector};
 
 /// An ellipsoid that knows its mass by the schoolbook.
@@ -158,8 +158,9 @@ fn the_bear_weighs_what_its_parts_weigh() {
 fn overlaps_of_the_bear_are_counted_once() {
     let bear = bear();
     for turns in [bear.rest_rotations(), waving(&bear)] {
-        let once = bear.union_mass_properties(&turns, 64);
-        let overlap = bear.overlap(&turns, 64);
+        let MassEstimate { mass: once, error } = bear.union_mass_properties(&turns, 64);
+        let [overlap, off] = bear.overlap(&turns, 64);
+        assert!(error > 0.0 && error < 3e-3 && off > 0.0 && off < 3e-3, "{error} {off}");
         // the whole bear on a grid of its own, cell by cell, with the 4x4 matrices turned back
         let parts: Vec<_> = matrices(&bear, &turns)
             .into_iter()

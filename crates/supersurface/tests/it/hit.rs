@@ -1,5 +1,6 @@
 //! First hits of rays against brute force and closed forms.
 
+use supersurface::combine::{Alpha, Blend, CombinedSolid};
 use supersurface::measure::first_hit;
 use supersurface::nalgebra::{Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
@@ -123,4 +124,81 @@ fn boxes_are_met_on_their_faces() {
     }
     let beside = Ray { origin: Point::new(0.0301, 0.0, 0.6), direction: -Vector::z_axis() };
     assert!(first_hit(&cube, &beside, 1.0).is_none());
+}
+
+/// A bead, a plate with five holes, a bracket with a fillet, a sieve of balls, and two bodies apart.
+fn trees() -> Vec<CombinedSolid> {
+    let block = |axes: [f64; 3], at: [f64; 3]| {
+        let block = Superellipsoid::new(axes, [0.1, 0.1]).unwrap();
+        CombinedSolid::new(Posed::new(block, Pose::translation(at[0], at[1], at[2])).unwrap())
+    };
+    let round = |axes: [f64; 3], e: [f64; 2], at: [f64; 3]| {
+        let round = Superellipsoid::new(axes, e).unwrap();
+        CombinedSolid::new(Posed::new(round, Pose::translation(at[0], at[1], at[2])).unwrap())
+    };
+    let drill = |x: f64, y: f64| round([0.012, 0.012, 0.2], [0.1, 1.0], [x, y, 0.0]);
+    let bead = round([0.05; 3], [1.0; 2], [0.0; 3]);
+    let bead = bead.difference(block([0.02, 0.02, 0.1], [0.0; 3]), Alpha::SMOOTH);
+    let holes = [[0.0, 0.0], [0.05, 0.05], [-0.05, 0.05], [0.05, -0.05], [-0.05, -0.05]];
+    let plate = block([0.1, 0.08, 0.02], [0.0; 3]);
+    let plate = holes.iter().fold(plate, |p, [x, y]| p.difference(drill(*x, *y), Alpha::EXACT));
+    let fillet = Blend::new(0.2, [0.4, 0.5]).unwrap();
+    let bracket = block([0.1, 0.05, 0.015], [0.0; 3])
+        .blend_union(block([0.015, 0.05, 0.08], [0.0; 3]), fillet);
+    let ring = Supertoroid::new([0.02; 3], 3.0, [0.5, 1.0]).unwrap();
+    let sieve = round([0.06; 3], [1.0; 2], [0.0; 3])
+        .intersection(round([0.04; 3], [1.0; 2], [0.0; 3]).complement(), Alpha::SMOOTH)
+        .union(CombinedSolid::new(ring), Alpha::new(0.5).unwrap());
+    let apart = round([0.03; 3], [1.0; 2], [0.2, 0.0, 0.0])
+        .union(block([0.03; 3], [-0.2, 0.0, 0.0]), Alpha::SMOOTH);
+    vec![bead, plate, bracket, sieve, apart]
+}
+
+#[test]
+fn trees_are_met_where_fine_marching_meets_them() {
+    for (tree, solid) in trees().iter().enumerate() {
+        let [low, high] = solid.bounds();
+        let (middle, half) = (supersurface::nalgebra::center(&low, &high), (high - low) * 0.5);
+        let (mut hits, mut misses, mut thin) = (0, 0, 0);
+        for case in 0..1000 {
+            let stream = &mut Stream::new(29 + tree as u64, case);
+            let mut inside =
+                || middle + half.component_mul(&Vector::from_fn(|_, _| stream.between(-1.0, 1.0)));
+            let (target, start) = (inside(), inside());
+            let towards = if case % 5 == 0 { Vector::y() } else { vector(stream) };
+            let direction = Direction::new_normalize(towards);
+            let origin = if case % 7 == 0 { start } else { target - direction.into_inner() };
+            let ray = Ray { origin, direction };
+            let n = 8000;
+            let at = |i: usize| i as f64 * 2.0 / n as f64;
+            let begun = solid.contains(&ray.origin);
+            let changed = |i: usize| solid.contains(&ray.at(at(i))) != begun;
+            let crossing = (1..=n).find(|i| changed(*i));
+            match (first_hit(solid, &ray, 2.0), crossing) {
+                (Some(hit), Some(i)) => {
+                    let gauge = solid.gauge(&hit.point);
+                    assert!((gauge - 1.0).abs() < 1e-9, "{tree} {case}: {gauge}");
+                    let stay = (i..=n).find(|k| !changed(*k)).unwrap_or(n) - i;
+                    let late = hit.distance > at(i) + 1e-12;
+                    // a piece or a gap thinner than a fortieth of the way through the box may be passed
+                    let allowed = at(stay) <= 2.0 * half.norm() / 40.0;
+                    assert!(!late || allowed, "{tree} {case}: {} > {}", hit.distance, at(i));
+                    thin += usize::from(late);
+                    hits += 1;
+                }
+                (None, None) => misses += 1,
+                // between two steps
+                (Some(hit), None) => {
+                    assert!((solid.gauge(&hit.point) - 1.0).abs() < 1e-9, "{tree} {case}");
+                }
+                (None, Some(i)) => {
+                    let stay = (i..=n).find(|k| !changed(*k)).unwrap_or(n) - i;
+                    assert!(at(stay) <= 2.0 * half.norm() / 40.0, "{tree} {case}: missed {i}");
+                    thin += 1;
+                }
+            }
+        }
+        assert!(hits > 250 && hits + misses > 950, "{tree}: {hits} hits, {misses} misses");
+        assert!(thin <= 10, "{tree}: {thin} thin pieces passed");
+    }
 }

@@ -10,7 +10,10 @@
 //!   tangents and normals, but no explicit gauge.
 //! * [`RadialExtended`]: the exponents follow the *geometric* angles of a point. Its gauge is explicit and exact.
 
+mod hessian;
+mod mass;
 mod radial;
+mod radial_mass;
 
 pub use radial::RadialExtended;
 
@@ -89,17 +92,22 @@ impl ExtendedSuperellipsoid {
 
     /// `[[f1, f1'], [f2, f2']]`; the slope is 0 where the exponent is clamped.
     fn exponents_and_slopes(&self, eta: f64, omega: f64) -> [[f64; 2]; 2] {
-        let clamped = |[f, slope]: [f64; 2]| {
+        self.exponent_derivatives(eta, omega).map(|[f, slope, _]| [f, slope])
+    }
+
+    /// `[[f1, f1', f1''], [f2, f2', f2'']]`; a constant where the exponent is clamped.
+    fn exponent_derivatives(&self, eta: f64, omega: f64) -> [[f64; 3]; 2] {
+        let clamped = |[f, slope, bend]: [f64; 3]| {
             let [low, high] = EXPONENTS;
             if f < low {
-                [low, 0.0]
+                [low, 0.0, 0.0]
             } else if f > high {
-                [high, 0.0]
+                [high, 0.0, 0.0]
             } else {
-                [f, slope]
+                [f, slope, bend]
             }
         };
-        [clamped(self.profile.value_and_slope(eta)), clamped(self.section.value_and_slope(omega))]
+        [clamped(self.profile.derivatives(eta)), clamped(self.section.derivatives(omega))]
     }
 }
 

@@ -79,7 +79,7 @@ impl RadialExtended {
 }
 
 /// `η_g` and `ω_g` of a scaled point.
-fn angles(scaled: &Vector) -> (f64, f64) {
+pub(super) fn angles(scaled: &Vector) -> (f64, f64) {
     (scaled.z.atan2(scaled.x.hypot(scaled.y)), scaled.y.atan2(scaled.x))
 }
 

@@ -8,6 +8,7 @@ mod bounds;
 mod form;
 mod hessian;
 mod interior;
+mod mass;
 mod reach;
 
 pub use form::HyperquadricForm;

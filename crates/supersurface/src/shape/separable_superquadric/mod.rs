@@ -4,6 +4,7 @@
 //! ellipsoid has 2, 2, 2), not the ε of the superellipsoid, whose family it does not belong to: three
 //! exponents instead of two layers, and no homogeneity, so that the gauge is a root (FORMULAS §1.1).
 
+mod filled;
 mod gauge;
 mod mass;
 mod parametric;

@@ -5,6 +5,7 @@
 //! overflow (FORMULAS §0.1).
 
 mod curvature;
+mod filled;
 mod gauge;
 mod hessian;
 mod implicit_value;

@@ -1,18 +1,17 @@
-//! Volume and moments of a supershape.
-//!
-//! With `u = √(x² + y²)/r1(θ) = q cosφ` and `z = q sinφ` the volume element is `r1² u du dθ dz`, so every
-//! moment is a product of two integrals over one angle:
-//! `∫ x^i y^j z^k dV = ∫ r1^(2+i+j) cos^i θ sin^j θ dθ · ∫ r2^(n+k+3) cos^(n+1) φ sin^k φ dφ / (n+k+3)`
-//! with `n = i + j`.
+//! Volume and moments of a supershape, a product of two curves ([`ProductMoments`]): around z their turn is
+//! `r1² dθ`, from pole to pole `r2² dφ`.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::Matrix3;
-
 use super::{Superformula, Supershape};
+use crate::Point;
 use crate::numeric::tanh_sinh::{Integral, integrate};
-use crate::shape::{Mass, MassProperties};
-use crate::{Point, Vector};
+use crate::shape::product_moments::ProductMoments;
+use crate::shape::{Filled, Mass, MassEstimate, MassProperties, Parametric};
+
+/// The angles of longitude and latitude.
+const AROUND: [f64; 2] = [-PI, PI];
+const ALONG: [f64; 2] = [-FRAC_PI_2, FRAC_PI_2];
 
 /// Relative difference at which the integration stops.
 const ACCURACY: f64 = 1e-12;
@@ -25,44 +24,85 @@ impl Supershape {
 
     /// Volume and the estimated error of its integration, both in m³.
     pub fn volume_and_error(&self) -> [f64; 2] {
-        let (around, along) = (self.around(), self.along());
-        let ([l, ..], [p, ..]) = (around.value, along.value);
-        let ([dl, ..], [dp, ..]) = (around.error, along.error);
-        [l * p, dl * p + dp * l]
+        let moments = self.moments();
+        [moments.volume(), moments.volume() * moments.error()]
     }
 
-    /// `∫ r1^(2+i+j) cos^i sin^j dθ` for (i, j) = (0,0), (1,0), (0,1), (2,0), (1,1), (0,2).
-    fn around(&self) -> Integral<6> {
-        let curve = self.longitude();
-        pieces(curve, -PI, PI, |theta| {
-            let r = curve.radius(theta);
+    fn moments(&self) -> ProductMoments {
+        let (longitude, latitude) = (self.longitude(), self.latitude());
+        let around = pieces(longitude, AROUND, |theta| {
+            let r = longitude.radius(theta);
             let (s, c) = theta.sin_cos();
             let (x, y) = (r * c, r * s);
             [1.0, x, y, x * x, x * y, y * y].map(|v| v * r * r)
-        })
-    }
-
-    /// `∫ r2^(n+k+3) cos^(n+1) sin^k dφ / (n+k+3)` for (n, k) = (0,0), (1,0), (0,1), (2,0), (1,1), (0,2).
-    fn along(&self) -> Integral<6> {
-        let curve = self.latitude();
-        pieces(curve, -FRAC_PI_2, FRAC_PI_2, |phi| {
-            let r = curve.radius(phi);
+        });
+        let along = pieces(latitude, ALONG, |phi| {
+            let r = latitude.radius(phi);
             let (s, c) = phi.sin_cos();
             let (u, z) = (r * c, r * s);
-            let five = [u * u, u * z, z * z].map(|v| v / 5.0);
-            [1.0 / 3.0, u / 4.0, z / 4.0, five[0], five[1], five[2]].map(|v| v * r * r * u)
-        })
+            [1.0, u, z, u * u, u * z, z * z].map(|v| v * r * r * u)
+        });
+        ProductMoments { around, along }
+    }
+}
+
+/// Number of pieces of an interval in which no cosine or sine of the curve changes sign.
+fn smooth_pieces(curve: &Superformula, [from, to]: [f64; 2]) -> usize {
+    let width = 2.0 * PI / curve.m().max(1e-3);
+    ((to / width).ceil() - (from / width).floor()) as usize
+}
+
+/// One of them.
+fn smooth_piece(curve: &Superformula, [from, to]: [f64; 2], k: usize) -> [f64; 2] {
+    let width = 2.0 * PI / curve.m().max(1e-3);
+    let start = (from / width).floor() + k as f64;
+    [(start * width).max(from), ((start + 1.0) * width).min(to)]
+}
+
+/// Pieces for the filling, at most: of curves that have more of them a few stand together.
+const MOST: usize = 16;
+
+/// A place in one of the pieces, and how fast it moves with its share of the piece.
+fn place(curve: &Superformula, range: [f64; 2], piece: usize, share: f64) -> [f64; 2] {
+    let [low, high] = if smooth_pieces(curve, range) <= MOST {
+        smooth_piece(curve, range, piece)
+    } else {
+        let width = (range[1] - range[0]) / MOST as f64;
+        [range[0] + width * piece as f64, range[0] + width * (piece as f64 + 1.0)]
+    };
+    [low + share * (high - low), high - low]
+}
+
+impl Filled for Supershape {
+    fn pieces(&self) -> usize {
+        let around = smooth_pieces(self.longitude(), AROUND).min(MOST);
+        around * smooth_pieces(self.latitude(), ALONG).min(MOST)
+    }
+
+    fn along(
+        &self,
+        piece: usize,
+        [u, v]: [f64; 2],
+        shares: &[f64],
+        each: &mut dyn FnMut(Point, f64),
+    ) {
+        let count = smooth_pieces(self.longitude(), AROUND).min(MOST);
+        let [theta, turn] = place(self.longitude(), AROUND, piece % count.max(1), u);
+        let [phi, tilt] = place(self.latitude(), ALONG, piece / count.max(1), v);
+        let (r1, r2) = (self.longitude().radius(theta), self.latitude().radius(phi));
+        let volume = r1 * r1 * r2 * r2 * r2 * phi.cos() * turn * tilt;
+        let end = self.point(phi, theta);
+        for r in shares {
+            each(end * *r, volume * r * r);
+        }
     }
 }
 
 /// An integral over an interval, cut where a cosine or a sine of the curve changes sign.
-fn pieces(curve: &Superformula, from: f64, to: f64, f: impl Fn(f64) -> [f64; 6]) -> Integral<6> {
+fn pieces(curve: &Superformula, range: [f64; 2], f: impl Fn(f64) -> [f64; 6]) -> Integral<6> {
     let mut total = Integral { value: [0.0; 6], error: [0.0; 6] };
-    let width = 2.0 * PI / curve.m().max(1e-3);
-    let (first, last) = ((from / width).floor() as i64, (to / width).ceil() as i64);
-    for k in first..last {
-        let low = if k == first { from } else { k as f64 * width };
-        let high = if k + 1 == last { to } else { (k + 1) as f64 * width };
+    for k in 0..smooth_pieces(curve, range) {
+        let [low, high] = smooth_piece(curve, range, k);
         let part = integrate(&f, low, high, ACCURACY);
         for i in 0..6 {
             total.value[i] += part.value[i];
@@ -74,21 +114,20 @@ fn pieces(curve: &Superformula, from: f64, to: f64, f: impl Fn(f64) -> [f64; 6])
 
 impl MassProperties for Supershape {
     fn mass_properties(&self, density: f64) -> Mass {
-        let [l, lx, ly, lxx, lxy, lyy] = self.around().value;
-        let [p, pu, pz, puu, puz, pzz] = self.along().value;
-        let volume = l * p;
-        let centre = Vector::new(lx * pu, ly * pu, l * pz) / volume;
-        let (xy, xz, yz) = (lxy * puu, lx * puz, ly * puz);
-        let second = Matrix3::new(lxx * puu, xy, xz, xy, lyy * puu, yz, xz, yz, l * pzz);
-        let central = second - centre * centre.transpose() * volume;
-        let inertia = Matrix3::identity() * central.trace() - central;
-        Mass { mass: density * volume, centre: Point::from(centre), inertia: inertia * density }
+        self.mass_estimate(density).mass
+    }
+
+    fn mass_estimate(&self, density: f64) -> MassEstimate {
+        self.moments().mass([1.0; 3], density)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Matrix3;
+
     use super::*;
+    use crate::Vector;
     use crate::shape::Implicit;
 
     #[test]

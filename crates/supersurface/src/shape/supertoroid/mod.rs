@@ -5,6 +5,7 @@
 //! `a1 = a2 = a3 = r` and `a4 = R/r`.
 
 mod curvature;
+mod filled;
 mod gauge;
 mod hessian;
 mod implicit_value;

@@ -59,6 +59,15 @@ fn finite<'a>(values: impl IntoIterator<Item = &'a f64>) -> bool {
 
 /// Gauge, gradient, first-order distance, rays and nearest points.
 pub(super) fn point_extremes<S: Implicit>(make: Make<S>) {
+    with_points(make, 0.0);
+}
+
+/// The same of gauges that may fall under 0 inside.
+pub(super) fn point_extremes_of_combined<S: Implicit>(make: Make<S>) {
+    with_points(make, -100.0);
+}
+
+fn with_points<S: Implicit>(make: Make<S>, least: f64) {
     let mut made = 0;
     for (index, shape) in all_sizes(make, 100).enumerate() {
         made += 1;
@@ -76,7 +85,7 @@ pub(super) fn point_extremes<S: Implicit>(make: Make<S>) {
                 assert!(endless || gauge.is_nan() || gauge > 1.0, "{p}: {gauge}");
                 continue;
             }
-            assert!(gauge >= 0.0, "{p}: {gauge}");
+            assert!(gauge >= least, "{p}: {gauge}");
             if i % 2 == 0 {
                 let gradient = shape.gradient(&p);
                 assert!(finite(gradient.iter()), "{p}: {gradient}");

@@ -1,6 +1,7 @@
 //! Random members of the family. All lengths are multiplied by `scale`, so that the same numbers at two scales are
 //! two sizes of one shape.
 
+use supersurface::combine::{Alpha, Blend, CombinedSolid};
 use supersurface::deform::{Bend, Cavity, Deformed, ShearBend, Taper, Twist};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{
@@ -192,4 +193,31 @@ pub(super) fn posed(r: &mut Stream, scale: f64) -> Result<Posed<Superellipsoid>,
 pub(super) fn pose(random: &mut Stream, scale: f64) -> Pose {
     let mut vector = || Vector::from_fn(|_, _| random.normal());
     Pose::new(vector() * scale, vector())
+}
+
+/// A stick and a ball or a ring beside it, with a hole and cut by a block; every second one with a fillet.
+pub(super) fn combined(r: &mut Stream, scale: f64) -> Result<CombinedSolid, InvalidShape> {
+    let near = |r: &mut Stream| {
+        let mut vector = |size: f64| Vector::from_fn(|_, _| size * r.between(-1.0, 1.0));
+        Pose::new(vector(0.15 * scale), vector(3.0))
+    };
+    let body = CombinedSolid::new(Posed::new(stick(r, scale)?, near(r))?);
+    let size = scale * r.between(0.1, 0.3);
+    let ball = Posed::new(Superellipsoid::new([size; 3], [1.0; 2])?, near(r))?;
+    let ring = Posed::new(Supertoroid::new([0.3 * size; 3], 3.0, exponents(r))?, near(r))?;
+    let beside =
+        if r.uniform() < 0.5 { CombinedSolid::new(ball) } else { CombinedSolid::new(ring) };
+    let alphas = [Alpha::SMOOTH, Alpha::EXACT, Alpha::new(0.5)?, Alpha::new(-0.4)?];
+    let alpha = alphas[r.index(alphas.len())];
+    let whole = if r.uniform() < 0.5 {
+        body.blend_union(beside, Blend::new(r.between(0.0, 0.2), [0.5, r.between(0.2, 1.0)])?)
+    } else {
+        body.union(beside, alpha)
+    };
+    let hole = scale * r.between(0.05, 0.1);
+    let hole = Superellipsoid::new([hole, hole, scale], [exponent(r).min(1.9); 2])?;
+    let block = Superellipsoid::new([0.4 * scale; 3], [0.2, exponent(r).min(1.9)])?;
+    Ok(whole
+        .difference(CombinedSolid::new(Posed::new(hole, near(r))?), alpha)
+        .intersection(CombinedSolid::new(block), alpha))
 }

@@ -20,7 +20,8 @@ mod checks {
     pub(super) use super::body::{bounds, mass, support, tight, touched};
     pub(super) use super::dual::{dual, dual_gradient};
     pub(super) use super::extremes::{
-        hessian_extremes, point_extremes, support_extremes, surface_extremes,
+        hessian_extremes, point_extremes, point_extremes_of_combined, support_extremes,
+        surface_extremes,
     };
     pub(super) use super::forms::{curvature, fundamental_forms};
     pub(super) use super::gauge::{gradient, hessian};
@@ -53,14 +54,15 @@ mod lines {
     conforms!(supercone: supercone => gradient hessian on_surface parametric curvature bounds touched support tight mass ray nearest nearest_solid point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(separable_superquadric: separable => gradient hessian dual on_surface parametric curvature bounds touched support tight mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
     conforms!(quadric: quadric => gradient hessian on_surface parametric curvature bounds support mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
-    conforms!(supershape: supershape => gradient hessian on_surface parametric bounds mass ray nearest point_extremes hessian_extremes surface_extremes);
-    conforms!(hyperquadric: hyperquadric => gradient hessian bounds ray nearest_solid point_extremes hessian_extremes);
+    conforms!(supershape: supershape => gradient hessian on_surface parametric curvature bounds mass ray nearest point_extremes hessian_extremes surface_extremes);
+    conforms!(hyperquadric: hyperquadric => gradient hessian bounds mass ray nearest_solid point_extremes hessian_extremes);
     conforms!(extended: extended => parametric surface_extremes);
-    conforms!(extended_radial: extended_radial => gradient on_surface parametric bounds ray nearest_solid point_extremes surface_extremes);
-    conforms!(tapered: tapered => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
-    conforms!(twisted: twisted => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
-    conforms!(bent: bent => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
-    conforms!(shear_bent: shear_bent => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
-    conforms!(hollowed: hollowed => gradient dual_gradient on_surface parametric bounds ray nearest point_extremes surface_extremes);
+    conforms!(extended_radial: extended_radial => gradient hessian on_surface parametric curvature bounds touched mass ray nearest_solid point_extremes hessian_extremes surface_extremes);
+    conforms!(tapered: tapered => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
+    conforms!(twisted: twisted => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
+    conforms!(bent: bent => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
+    conforms!(shear_bent: shear_bent => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
+    conforms!(hollowed: hollowed => gradient dual_gradient on_surface parametric bounds mass ray nearest point_extremes surface_extremes);
+    conforms!(combined: combined => gradient bounds ray nearest_solid point_extremes_of_combined);
     conforms!(posed: posed => gradient hessian on_surface parametric curvature bounds support mass ray nearest point_extremes hessian_extremes surface_extremes support_extremes);
 }

@@ -1,0 +1,34 @@
+//! The superellipsoid as lines from its centre, without the angles whose powers have infinite slopes.
+//!
+//! With `(x/a1, y/a2) = ρ b(s)` and `(ρ, z/a3) = r c(t)` on eighths of the unit superellipses of `2/ε2` and `2/ε1`, the
+//! volume element is `a1 a2 a3 r² c1 ds dt dr / (n(s)² m(t)²)` with the norms n and m.
+
+use super::Superellipsoid;
+use crate::Point;
+use crate::shape::Filled;
+use crate::shape::filled::{Bits, eighth};
+
+impl Filled for Superellipsoid {
+    fn pieces(&self) -> usize {
+        32
+    }
+
+    fn along(
+        &self,
+        piece: usize,
+        [s, t]: [f64; 2],
+        shares: &[f64],
+        each: &mut dyn FnMut(Point, f64),
+    ) {
+        let ([a1, a2, a3], [e1, e2]) = (self.semi_axes(), self.exponents());
+        let ([x, y], turn) = eighth(&mut Bits::of(piece % 8), s, 2.0 / e2);
+        // of the half plane only what lies outwards
+        let mut half = Bits::of(piece / 8 % 2 + piece / 16 % 2 * 4);
+        let ([out, up], tilt) = eighth(&mut half, t, 2.0 / e1);
+        let volume = a1 * a2 * a3 * out * turn * tilt;
+        let end = Point::new(a1 * out * x, a2 * out * y, a3 * up);
+        for r in shares {
+            each(end * *r, volume * r * r);
+        }
+    }
+}
