@@ -16,6 +16,9 @@ use crate::exit::{Failure, print};
 /// Cells along the longest side of what is marched.
 const CELLS: usize = 96;
 
+/// Estimated errors from which a marched mass is not told.
+const COARSE: f64 = 0.2;
+
 /// Which shape, of what.
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
@@ -110,6 +113,16 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
         (None, Model::Combined(s)) if bounded => Some(of_meshes(name, s, density)?),
         (None, _) => None,
     };
+    // what is thinner than a cell of the grid is not seen, and must not be told as if it were not there
+    let blind = |w: &Weighed| w.how == "of meshes" && !(w.volume > 0.0 && w.error < COARSE);
+    let mass = mass.filter(|w| {
+        let unknown = blind(w);
+        if unknown {
+            let why = format!("empty, or too thin for a grid of {CELLS} cells a side");
+            notes.push(("mass_unknown", why));
+        }
+        !unknown
+    });
     Ok(Facts { name: kind, bounds, convex, mass, notes })
 }
 
@@ -148,7 +161,7 @@ fn as_text(facts: &Facts) -> String {
         let _ = writeln!(out, "  {what:<18} {value}");
     };
     for (what, value) in &facts.notes {
-        line(what, value.clone());
+        line(&what.replace('_', " "), value.clone());
     }
     match facts.bounds {
         Some([low, high]) if (high - low).iter().all(|v| v.is_finite()) => {

@@ -31,6 +31,7 @@ pub(crate) struct MeshArgs {
 
 /// Makes and writes the mesh.
 pub(crate) fn run(args: &MeshArgs) -> Result<(), Failure> {
+    args.which.is_not(&args.output)?;
     let fine = Fineness { tolerance: args.tolerance, cells: args.cells as usize };
     let made = meshed(&args.which.name(), &args.which.model()?, fine)?;
     write_mesh(&args.output, &made.mesh).map_err(Failure::output)?;

@@ -96,6 +96,7 @@ pub(crate) fn run(args: &SampleArgs) -> Result<(), Failure> {
         Some(v) => Some(Point::from(triple("--seen-from", v)?)),
         None => None,
     };
+    args.which.is_not(&args.output)?;
     check_points_file(&args.output).map_err(Failure::output)?;
     let model = args.which.model()?;
     let spacing = match args.spread {
