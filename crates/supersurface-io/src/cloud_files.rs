@@ -8,6 +8,37 @@ use supersurface::{Direction, Point};
 use crate::error::WriteError;
 use crate::write::write_bytes;
 
+/// How points are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Pcd,
+    Ply,
+    Text,
+    Csv,
+}
+
+impl Format {
+    fn of(file: &Path) -> Result<Self, WriteError> {
+        let ending = file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        match ending.as_str() {
+            "pcd" => Ok(Self::Pcd),
+            "ply" => Ok(Self::Ply),
+            "xyz" | "txt" => Ok(Self::Text),
+            "csv" => Ok(Self::Csv),
+            _ => Err(refused(file, "points are written to .pcd, .ply, .xyz, .txt or .csv".into())),
+        }
+    }
+}
+
+fn refused(file: &Path, problem: String) -> WriteError {
+    WriteError::new(file, std::io::Error::new(std::io::ErrorKind::InvalidInput, problem))
+}
+
+/// Fails when a file's ending says no format of points: to be asked before points are made.
+pub fn check_points_file(file: &Path) -> Result<(), WriteError> {
+    Format::of(file).map(|_| ())
+}
+
 /// Writes points in metres, with a normal each or none at all, by the file's ending: `.pcd` or `.ply` (double precision,
 /// binary little endian), `.xyz`, `.txt` or `.csv` (text). Fails for other endings, and when there are normals for some
 /// points only.
@@ -16,23 +47,18 @@ pub fn write_points(
     points: &[Point],
     normals: &[Direction],
 ) -> Result<(), WriteError> {
-    let failed = |text: String| {
-        WriteError::new(file, std::io::Error::new(std::io::ErrorKind::InvalidInput, text))
-    };
-    if !normals.is_empty() && normals.len() != points.len() {
-        let (have, need) = (normals.len(), points.len());
-        return Err(failed(format!("{have} normals for {need} points")));
+    let (have, need) = (normals.len(), points.len());
+    if have != 0 && have != need {
+        return Err(refused(file, format!("{have} normals for {need} points")));
     }
-    let ending = file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let bytes = match ending.as_str() {
-        "pcd" => binary(pcd_header(points.len(), !normals.is_empty()), points, normals),
-        "ply" => binary(ply_header(points.len(), !normals.is_empty()), points, normals),
-        "xyz" | "txt" => text(points, normals, ' ').into_bytes(),
-        "csv" => {
-            let names = if normals.is_empty() { "x,y,z\n" } else { "x,y,z,nx,ny,nz\n" };
+    let bytes = match Format::of(file)? {
+        Format::Pcd => binary(pcd_header(need, have > 0), points, normals),
+        Format::Ply => binary(ply_header(need, have > 0), points, normals),
+        Format::Text => text(points, normals, ' ').into_bytes(),
+        Format::Csv => {
+            let names = if have > 0 { "x,y,z,nx,ny,nz\n" } else { "x,y,z\n" };
             (names.to_owned() + &text(points, normals, ',')).into_bytes()
         }
-        _ => return Err(failed("name a file that ends in .pcd, .ply, .xyz, .txt or .csv".into())),
     };
     write_bytes(file, &bytes)
 }

@@ -41,7 +41,7 @@ mod text;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
-pub use cloud_files::write_points;
+pub use cloud_files::{check_points_file, write_points};
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use grasps_json::write_grasps;

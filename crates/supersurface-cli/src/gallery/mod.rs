@@ -48,8 +48,12 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<(), Failure> {
         let known = known.join(", ");
         return Err(Failure::usage(format!("--only: there is no figure {unknown}, but {known}")));
     }
-    std::fs::create_dir_all(&args.folder)
-        .map_err(|e| Failure::output(format!("{}: {e}", args.folder.display())))?;
+    std::fs::create_dir_all(&args.folder).map_err(|e| {
+        Failure::output(format!(
+            "{}: is no folder and cannot be made one: {e}",
+            args.folder.display()
+        ))
+    })?;
     for (number, name, draw) in FIGURES {
         if !args.only.is_empty() && !args.only.contains(&number) {
             continue;

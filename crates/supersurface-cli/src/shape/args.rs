@@ -1,5 +1,7 @@
 //! How a shape is said on the command line: a file, JSON itself, or flags, all read as the same JSON.
 
+use std::path::Path;
+
 use clap::Args;
 use supersurface_io::{Model, parse_shape, read_shape};
 
@@ -66,6 +68,15 @@ impl ShapeArgs {
             Some(file) if file == "-" => "standard input".into(),
             Some(file) if !is_json(file) => file.clone(),
             _ => "the shape on the command line".into(),
+        }
+    }
+
+    /// Fails when a file to be written is the one that is read.
+    pub(crate) fn is_not(&self, output: &Path) -> Result<(), Failure> {
+        let input = self.shape.as_ref().and_then(|s| Path::new(s).canonicalize().ok());
+        match input.is_some() && input == output.canonicalize().ok() {
+            true => Err(Failure::usage(format!("{}: is the input", output.display()))),
+            false => Ok(()),
         }
     }
 

@@ -16,12 +16,15 @@ use crate::exit::{Failure, print};
 /// Cells along the longest side of what is marched.
 const CELLS: usize = 96;
 
+/// Estimated errors from which a marched mass is not told.
+const COARSE: f64 = 0.2;
+
 /// Which shape, of what.
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     #[command(flatten)]
     which: ShapeArgs,
-    /// Density in kg/m³.
+    /// Density in kg/m³; the parts of an assembly have their own.
     #[arg(long, value_name = "RHO", default_value_t = 1000.0)]
     density: f64,
     /// Print as JSON.
@@ -40,6 +43,8 @@ struct Facts {
 
 /// Mass properties and how they came about.
 struct Weighed {
+    /// In m³; of an assembly the sum of its parts.
+    volume: f64,
     mass: Mass,
     /// Estimated relative error.
     error: f64,
@@ -53,21 +58,21 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("--density: {given} is not positive and finite")));
     }
     let facts = facts(&args.which.name(), &args.which.model()?, args.density)?;
-    print(&if args.json { as_json(&facts, args.density) } else { as_text(&facts, args.density) })
+    print(&if args.json { as_json(&facts) } else { as_text(&facts) })
 }
 
 fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
     let mut notes = Vec::new();
     let (kind, bounds, convex, own) = match model {
         Model::Solid(solid) => {
-            let mass = Some(weighed(solid.mass_estimate(density)));
+            let mass = Some(weighed(solid.mass_estimate(density), density));
             (solid.shape().name(), Some(solid.bounds()), Some(solid.shape().is_convex()), mass)
         }
         Model::Implicit(kind, solid) => {
             ((*kind).to_owned(), Some(solid.bounds()), Some(solid.is_convex()), None)
         }
         Model::Extended(solid) => {
-            let mass = Some(weighed(solid.mass_estimate(density)));
+            let mass = Some(weighed(solid.mass_estimate(density), density));
             ("extended superellipsoid".into(), None, None, mass)
         }
         Model::Combined(solid) => {
@@ -102,19 +107,29 @@ fn facts(name: &str, model: &Model, density: f64) -> Result<Facts, Failure> {
             sum
         }
         (None, Model::Quadric(quadric)) => {
-            quadric.as_ellipsoid().map(|e| weighed(e.mass_estimate(density)))
+            quadric.as_ellipsoid().map(|e| weighed(e.mass_estimate(density), density))
         }
         (None, Model::Implicit(_, s)) if bounded => Some(of_meshes(name, s, density)?),
         (None, Model::Combined(s)) if bounded => Some(of_meshes(name, s, density)?),
         (None, _) => None,
     };
+    // what is thinner than a cell of the grid is not seen, and must not be told as if it were not there
+    let blind = |w: &Weighed| w.how == "of meshes" && !(w.volume > 0.0 && w.error < COARSE);
+    let mass = mass.filter(|w| {
+        let unknown = blind(w);
+        if unknown {
+            let why = format!("empty, or too thin for a grid of {CELLS} cells a side");
+            notes.push(("mass_unknown", why));
+        }
+        !unknown
+    });
     Ok(Facts { name: kind, bounds, convex, mass, notes })
 }
 
 /// From the library's own answer.
-fn weighed(found: MassEstimate) -> Weighed {
-    let MassEstimate { mass, error } = found;
-    Weighed { mass, error, how: if error == 0.0 { "closed form" } else { "by integration" } }
+fn weighed(found: MassEstimate, density: f64) -> Weighed {
+    let how = if found.error == 0.0 { "closed form" } else { "by integration" };
+    Weighed { volume: found.mass.mass / density, mass: found.mass, error: found.error, how }
 }
 
 /// Two weighed parts as one; the second stands at a pose.
@@ -124,6 +139,7 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
     Some(match sum {
         None => Weighed { mass: moved, ..part },
         Some(sum) => Weighed {
+            volume: sum.volume + part.volume,
             mass: sum.mass.joined(&moved),
             error: sum.error.max(part.error),
             how: if sum.how == part.how { part.how } else { "partly by integration" },
@@ -134,18 +150,18 @@ fn joined(sum: Option<Weighed>, part: Option<Weighed>, pose: &Pose) -> Option<We
 /// Of two meshes.
 fn of_meshes(name: &str, solid: &(impl Implicit + Sync), density: f64) -> Result<Weighed, Failure> {
     let found = mass_of_solid(solid, density, CELLS);
-    let MassEstimate { mass, error } = found.map_err(|e| Failure::input(format!("{name}: {e}")))?;
-    Ok(Weighed { mass, error, how: "of meshes" })
+    let found = found.map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    Ok(Weighed { how: "of meshes", ..weighed(found, density) })
 }
 
-fn as_text(facts: &Facts, density: f64) -> String {
+fn as_text(facts: &Facts) -> String {
     let mut out = format!("{}\n", facts.name);
     let mut line = |what: &str, value: String| {
         // writing to a string does not fail
         let _ = writeln!(out, "  {what:<18} {value}");
     };
     for (what, value) in &facts.notes {
-        line(what, value.clone());
+        line(&what.replace('_', " "), value.clone());
     }
     match facts.bounds {
         Some([low, high]) if (high - low).iter().all(|v| v.is_finite()) => {
@@ -160,8 +176,8 @@ fn as_text(facts: &Facts, density: f64) -> String {
     if let Some(convex) = facts.convex {
         line("convex", if convex { "yes".into() } else { "not known to be".into() });
     }
-    if let Some(Weighed { mass, error, how }) = &facts.mass {
-        line("volume", format!("{:.6e} m³ ({how}{})", mass.mass / density, about(*error)));
+    if let Some(Weighed { volume, mass, error, how }) = &facts.mass {
+        line("volume", format!("{volume:.6e} m³ ({how}{})", about(*error)));
         line("mass", format!("{} kg", short(mass.mass)));
         line("centre of mass", row(&mass.centre.coords));
         let moments = principal(&mass.inertia);
@@ -170,15 +186,14 @@ fn as_text(facts: &Facts, density: f64) -> String {
     out
 }
 
-fn as_json(facts: &Facts, density: f64) -> String {
+fn as_json(facts: &Facts) -> String {
     let point = |p: &Point| json!(finite(&p.coords));
     let mut value = json!({
         "name": facts.name,
         "bounds": facts.bounds.map(|[low, high]| json!({"low": point(&low), "high": point(&high)})),
         "convex": facts.convex,
         "mass": facts.mass.as_ref().map(|w| json!({
-            "density": density,
-            "volume": w.mass.mass / density,
+            "volume": w.volume,
             "mass": w.mass.mass,
             "centre": point(&w.mass.centre),
             "inertia": (0..3).map(|i| finite(&w.mass.inertia.column(i).into_owned())).collect::<Vec<_>>(),

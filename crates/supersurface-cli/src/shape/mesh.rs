@@ -31,6 +31,7 @@ pub(crate) struct MeshArgs {
 
 /// Makes and writes the mesh.
 pub(crate) fn run(args: &MeshArgs) -> Result<(), Failure> {
+    args.which.is_not(&args.output)?;
     let fine = Fineness { tolerance: args.tolerance, cells: args.cells as usize };
     let made = meshed(&args.which.name(), &args.which.model()?, fine)?;
     write_mesh(&args.output, &made.mesh).map_err(Failure::output)?;
@@ -39,7 +40,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<(), Failure> {
         true => json(&made.mesh, made.distance),
         false => {
             let near = match made.distance {
-                Some(d) => format!("within {:.3} mm of the surface", 1e3 * d),
+                Some(d) => format!("within {:.3e} m of the surface", d),
                 None => "marched: edges are cut by up to a cell".into(),
             };
             format!(

@@ -12,14 +12,16 @@ use supersurface::numeric::random::Stream;
 use supersurface::shape::{Implicit, Ray};
 use supersurface::surface::Solid;
 use supersurface::{Direction, Point, Vector};
-use supersurface_io::{Model, write_points};
+use supersurface_io::{Model, check_points_file, write_points};
 
 use super::args::{ShapeArgs, triple};
 use super::meshed::{Fineness, meshed};
 use crate::exit::{Failure, print};
 
-/// Most points: 2.4 GB in memory.
-const MOST: u64 = 50_000_000;
+/// Most points: 2 GB in memory.
+const MOST: u64 = 10_000_000;
+/// Cells along the longest side of what is marched.
+const CELLS: usize = 128;
 
 /// What to sample, how, and where to.
 #[derive(Debug, Args)]
@@ -94,6 +96,8 @@ pub(crate) fn run(args: &SampleArgs) -> Result<(), Failure> {
         Some(v) => Some(Point::from(triple("--seen-from", v)?)),
         None => None,
     };
+    args.which.is_not(&args.output)?;
+    check_points_file(&args.output).map_err(Failure::output)?;
     let model = args.which.model()?;
     let spacing = match args.spread {
         Spread::Area => None,
@@ -160,7 +164,7 @@ fn drawn(
             points.into_iter().map(|s| (pose * s.point, pose * facing(&s.point, s.normal)));
         return Ok(placed.collect());
     }
-    let mesh = meshed(name, model, Fineness { tolerance: None, cells: 200 })?.mesh;
+    let mesh = meshed(name, model, Fineness { tolerance: None, cells: CELLS })?.mesh;
     let sampler = MeshSampler::new(mesh);
     let draw = |i: u64| {
         let mut stream = Stream::new(seed, i);

@@ -125,9 +125,27 @@ fn wrong_use_is_told_with_its_status() {
         let ran = run(words).ended(status);
         assert!(ran.stderr.contains(wanted), "{words:?}: {}", ran.stderr);
     }
-    let plane = ["sample", "--superellipsoid", TIN, "-o", path, "--cut", "0,0,1,-9"];
+    let points = scratch("never.xyz");
+    let words = points.to_str().unwrap();
+    let plane = ["sample", "--superellipsoid", TIN, "-o", words, "--cut", "0,0,1,-9"];
     assert!(run(&plane).ended(4).stderr.contains("no point is left"));
-    assert!(!out.exists());
+    // the input is never written over, and what the grid cannot see is not weighed
+    let file = scratch("input.ply");
+    fs::write(&file, r#"{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [1, 1]}"#)
+        .unwrap();
+    let same = file.to_str().unwrap();
+    for command in ["mesh", "sample"] {
+        assert!(run(&[command, same, "-o", same]).ended(2).stderr.contains("is the input"));
+    }
+    let ball = |x: f64| {
+        format!(
+            r#"{{"type": "superellipsoid", "semi_axes": [0.1, 0.1, 0.1], "exponents": [1, 1], "position": [{x}, 0, 0]}}"#
+        )
+    };
+    let far = format!(r#"{{"type": "union", "of": [{}, {}]}}"#, ball(0.0), ball(300.0));
+    let told = run(&["info", &far, "--json"]).ended(0).json();
+    assert!(told["mass"].is_null() && told["mass_unknown"].is_string(), "{told}");
+    assert!(!out.exists() && !points.exists());
 }
 
 #[test]

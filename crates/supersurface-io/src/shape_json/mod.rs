@@ -15,7 +15,7 @@ use supersurface::{Pose, Vector};
 
 use self::rows::{AssemblyRow, DeformationRow, Leaf, ShapeRow, TreeRow};
 use crate::error::{Fault, ReadError};
-use crate::read::{load, shown_name};
+use crate::read::{BOM, load, shown_name};
 
 /// What a shape file holds.
 pub enum Model {
@@ -65,6 +65,7 @@ pub fn read_shape(file: &Path) -> Result<Model, ReadError> {
 /// ```
 pub fn parse_shape(name: &str, bytes: &[u8]) -> Result<Model, ReadError> {
     let fault = |f| ReadError::malformed(name, "shape JSON", f);
+    let bytes = bytes.strip_prefix(BOM).unwrap_or(bytes);
     let value: Value = serde_json::from_slice(bytes)
         .map_err(|e| fault(Fault::new(format!("line {}", e.line()), e.to_string())))?;
     model(value, "shape").map_err(fault)

@@ -24,20 +24,27 @@ const ROUNDS: usize = 24;
 pub enum TessellateError {
     /// The surface has a border, or is not of a size between 1e-100 and 1e100 m.
     #[error(
-        "the surface is not closed (its angles end neither in poles nor where they began), or has no size"
+        "the surface is not closed (its angles end neither in poles nor where they began), or is not of a size between 1e-100 and 1e100 m"
     )]
     Open,
     /// The tolerance is no length.
     #[error("the tolerance is {0} m: it must be positive and finite")]
     Tolerance(f64),
     /// More triangles, or finer angles than numbers can tell apart, would be needed.
-    #[error("a tolerance of {tolerance} m is too fine: the best mesh is {distance} m off")]
+    #[error("a tolerance of {tolerance:.3e} m is too fine ({}): take a larger one", reached(*distance))]
     TooFine {
         /// The tolerance asked for, in metres.
         tolerance: f64,
         /// The largest distance that was reached, in metres; infinite when the grid alone was too fine.
         distance: f64,
     },
+}
+
+fn reached(distance: f64) -> String {
+    match distance.is_finite() {
+        true => format!("the best mesh is {distance:.3e} m off"),
+        false => "it needs more than four million cells, or finer angles than there are".into(),
+    }
 }
 
 /// A mesh, and how far it is from its surface.
