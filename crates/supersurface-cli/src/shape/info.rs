@@ -220,7 +220,7 @@ fn principal(inertia: &Matrix3<f64>) -> Vector {
 }
 
 fn about(error: f64) -> String {
-    if error > 0.0 { format!(", less than {error:.1e} off") } else { String::new() }
+    if error > 0.0 { format!(", about {error:.1e} off") } else { String::new() }
 }
 
 fn row(v: &Vector) -> String {
