@@ -36,10 +36,8 @@ pub(super) fn supertoroids() -> Result<Image, Failure> {
 
 /// The lines where an angle is a multiple of π/2, and the poles.
 pub(super) fn seams() -> Result<Image, Failure> {
-    let mut sheet = Sheet::new(
-        "Seams, where an angle along (red) or around z (black) is a multiple of 90 degrees, and poles",
-        3,
-    );
+    let mut sheet =
+        Sheet::new("Seams: multiples of 90 degrees along (red) and around z (black); poles", 3);
     for e in [[0.3, 0.3], [1.0, 1.0], [1.6, 0.6]] {
         let shape: Solid = Superellipsoid::new([1.0, 0.8, 1.2], e).map_err(Failure::input)?.into();
         draw_seams(&mut sheet, &shape, &[0.0], &format!("superellipsoid, ε = {e:?}"));

@@ -3,8 +3,8 @@
 //! For a tetrahedron with the corners 0, a, b, c: `V = a·(b × c)/6`, first moment `V s/4` and second moment
 //! `V (aaᵀ + bbᵀ + ccᵀ + ssᵀ)/20` with `s = a + b + c`.
 
-use super::{MarchError, MarchOptions, Mesh, Resolution, TessellateError, march, tessellate};
-use crate::shape::{Implicit, Mass, MassEstimate, MassProperties, Moments, Parametric};
+use super::{MarchError, MarchOptions, Mesh, Resolution, march};
+use crate::shape::{Implicit, Mass, MassEstimate, MassProperties, Moments};
 
 impl MassProperties for Mesh {
     /// Of the polyhedron itself: exact for the mesh, near those of the surface that it was made of. They mean something
@@ -31,29 +31,6 @@ impl MassProperties for Mesh {
 /// Of the finer of two meshes: it is nearer than the error says, by about a factor of four.
 fn of_meshes(coarse: &Mesh, fine: &Mesh, density: f64) -> MassEstimate {
     MassEstimate::refined(&coarse.mass_properties(density), fine.mass_properties(density))
-}
-
-/// Mass properties of the solid in a closed surface, for a density in kg/m³, by meshes within `tolerance` metres (`None`
-/// chooses) and a quarter of it. The errors are those of [`tessellate`].
-///
-/// ```
-/// use supersurface::deform::{Deformed, Taper};
-/// use supersurface::{mesh::mass_of_surface, shape::Superellipsoid};
-/// let tin = Superellipsoid::new([0.03, 0.03, 0.05], [0.2, 1.0])?;
-/// let cup = Deformed::new(tin, Taper::new([0.3, 0.3], 0.05)?)?;
-/// let found = mass_of_surface(&cup, 1000.0, None)?;
-/// assert!((found.mass.mass / (1000.0 * cup.volume()) - 1.0).abs() < found.error);
-/// assert!(found.mass.centre.z > 0.0 && found.error < 5e-3);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn mass_of_surface<S: Parametric + ?Sized>(
-    surface: &S,
-    density: f64,
-    tolerance: Option<f64>,
-) -> Result<MassEstimate, TessellateError> {
-    let coarse = tessellate(surface, tolerance)?;
-    let fine = tessellate(surface, Some(coarse.tolerance / 4.0))?;
-    Ok(of_meshes(&coarse.mesh, &fine.mesh, density))
 }
 
 /// Mass properties of a bounded implicit solid, for a density in kg/m³, marched with `cells` along its longest side and
@@ -99,12 +76,7 @@ mod tests {
         let tin = Superellipsoid::new([0.03, 0.05, 0.08], [0.4, 1.2]).unwrap();
         let ring = Supertoroid::new([0.01, 0.02, 0.015], 3.0, [0.7, 1.3]).unwrap();
         let truths = [tin.mass_properties(2.0), ring.mass_properties(2.0)];
-        let found = [
-            mass_of_surface(&tin, 2.0, None).unwrap(),
-            mass_of_surface(&ring, 2.0, None).unwrap(),
-            mass_of_solid(&tin, 2.0, 60).unwrap(),
-            mass_of_solid(&ring, 2.0, 60).unwrap(),
-        ];
+        let found = [mass_of_solid(&tin, 2.0, 60).unwrap(), mass_of_solid(&ring, 2.0, 60).unwrap()];
         for (found, truth) in found.iter().zip(truths.iter().cycle()) {
             assert!(found.error < 0.02, "{found:?}");
             assert!((found.mass.mass / truth.mass - 1.0).abs() < found.error);

@@ -31,7 +31,7 @@ mod triangles;
 pub use equal_arc::{SuperellipseArc, pilu_fisher, pilu_fisher_step};
 pub use equal_arc_grid::{Spacing, superellipsoid_grid, supertoroid_grid};
 pub use march::{MarchError, MarchOptions, Resolution, march};
-pub use mass::{mass_of_solid, mass_of_surface};
+pub use mass::mass_of_solid;
 pub use sample::{SurfacePoint, SurfaceSampler};
 pub use tessellate::{TessellateError, Tessellation, tessellate, tessellate_patch};
 pub use triangles::{Mesh, MeshSampler};
