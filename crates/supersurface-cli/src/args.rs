@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
+use crate::fit::FitArgs;
 use crate::gallery::GalleryArgs;
 use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
 use crate::threads::MOST;
@@ -25,6 +26,8 @@ pub(crate) enum Command {
     Grasp(Box<GraspArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
+    /// One surface for a cloud of one object.
+    Fit(Box<FitArgs>),
     /// Draws the figures that explain the family.
     Gallery(GalleryArgs),
     /// What a shape is: size, volume, mass.
@@ -188,6 +191,15 @@ pub(crate) enum Model {
     Superellipsoid,
     /// Ring, roll, rim.
     Supertoroid,
+    /// Cup, cone, wedge.
+    Tapered,
+    /// Banana, handle.
+    Bent,
+    /// Sections that turn.
+    Twisted,
+    /// Horn.
+    #[value(name = "tapered_bent", alias = "tapered-bent")]
+    TaperedBent,
 }
 
 impl Model {
@@ -196,6 +208,10 @@ impl Model {
             Self::Auto => None,
             Self::Superellipsoid => Some(Family::Superellipsoid),
             Self::Supertoroid => Some(Family::Supertoroid),
+            Self::Tapered => Some(Family::Tapered),
+            Self::Bent => Some(Family::Bent),
+            Self::Twisted => Some(Family::Twisted),
+            Self::TaperedBent => Some(Family::TaperedBent),
         }
     }
 }

@@ -52,7 +52,7 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
 }
 
 /// What to say of a cloud whose size is unlikely in metres.
-fn units(cloud: &PointCloud, said: Units) -> Option<String> {
+pub(crate) fn units(cloud: &PointCloud, said: Units) -> Option<String> {
     let hint = unit_hint(cloud)?;
     Some(match (said, hint) {
         (Units::M, UnitHint::Centimetres) => {
@@ -116,7 +116,7 @@ fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
     Ok(Some(DepthCamera { size: None, focal, centre, distortion, depth_scale }))
 }
 
-fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
+pub(crate) fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
     if text == "none" {
         return Ok(None);
     }

@@ -3,6 +3,7 @@
 mod args;
 mod demo;
 mod exit;
+mod fit;
 mod gallery;
 mod grasp;
 mod input;
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Grasp(args) => grasp::run(args),
         Command::Demo(args) => demo::run(args),
+        Command::Fit(args) => fit::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Info(args) => shape::info(args),
         Command::Mesh(args) => shape::mesh(args),

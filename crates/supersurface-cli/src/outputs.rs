@@ -94,7 +94,7 @@ impl Run<'_> {
         }
         let options = Options {
             objects: source.objects,
-            fit: FitOptions { family: self.how.model.family() },
+            fit: self.how.model.family().map_or(FitOptions::UNDEFORMED, FitOptions::only),
             ..Options::default()
         };
         let told = &mut |stage| progress.stage(stage);

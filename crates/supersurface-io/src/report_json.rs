@@ -4,11 +4,12 @@
 //! `docs/report.md` lists all fields. Fields may be added within a version; none changes its meaning.
 
 use serde::Serialize;
-use supersurface::Pose;
 use supersurface::cloud::PointCloud;
 use supersurface::grasp::{Grasp, Gripper, Kind};
 use supersurface::pipeline::{Object, Report};
 use supersurface::segment::Segmentation;
+
+use crate::surface_row::{PoseRow, SurfaceRow};
 
 /// What a report says beside the results.
 #[derive(Clone, Copy, Debug)]
@@ -136,19 +137,6 @@ fn plane(segmentation: &Segmentation) -> Option<PlaneRow> {
 }
 
 #[derive(Serialize)]
-struct PoseRow {
-    position: [f64; 3],
-    orientation_wxyz: [f64; 4],
-}
-
-impl PoseRow {
-    fn new(pose: &Pose) -> Self {
-        let q = pose.rotation;
-        Self { position: pose.translation.vector.into(), orientation_wxyz: [q.w, q.i, q.j, q.k] }
-    }
-}
-
-#[derive(Serialize)]
 struct ObjectRow {
     id: usize,
     points: usize,
@@ -163,17 +151,6 @@ struct ObjectRow {
 }
 
 #[derive(Serialize)]
-struct SurfaceRow {
-    r#type: &'static str,
-    semi_axes: [f64; 3],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ring_ratio: Option<f64>,
-    exponents: [f64; 2],
-    #[serde(flatten)]
-    pose: PoseRow,
-}
-
-#[derive(Serialize)]
 struct QualityRow {
     residual: f64,
     noise: f64,
@@ -183,16 +160,7 @@ struct QualityRow {
 
 fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> ObjectRow {
     let fit = object.fit.as_ref();
-    let surface = fit.ok().map(|f| {
-        let shape = f.surface.shape();
-        SurfaceRow {
-            r#type: shape.name(),
-            semi_axes: shape.semi_axes(),
-            ring_ratio: shape.ring_ratio(),
-            exponents: shape.exponents(),
-            pose: PoseRow::new(f.surface.pose()),
-        }
-    });
+    let surface = fit.ok().map(|f| SurfaceRow::new(&f.surface));
     let quality = fit.ok().map(|f| QualityRow {
         residual: f.residual,
         noise: f.noise,

@@ -29,6 +29,11 @@ pub(crate) fn write_bytes(file: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     result.map_err(failed)
 }
 
+/// Writes text, as a whole or not at all.
+pub fn write_text(file: &Path, text: &str) -> Result<(), WriteError> {
+    write_bytes(file, text.as_bytes())
+}
+
 /// Writes a picture: `size` is [width, height], `pixels` red, green, blue row by row.
 pub fn write_png(file: &Path, size: [usize; 2], pixels: &[u8]) -> Result<(), WriteError> {
     let encode = || -> Result<Vec<u8>, png::EncodingError> {

@@ -51,6 +51,11 @@ impl<S, D: Deformation> Deformed<S, D> {
         &self.shape
     }
 
+    /// The same solid with its undeformed shape in another type, which must say the same of it.
+    pub(crate) fn mapped<T>(self, to: impl FnOnce(S) -> T) -> Deformed<T, D> {
+        Deformed { shape: to(self.shape), deformation: self.deformation, bounds: self.bounds }
+    }
+
     /// The deformation.
     pub const fn deformation(&self) -> &D {
         &self.deformation

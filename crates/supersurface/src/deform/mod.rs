@@ -21,6 +21,7 @@ mod deformed;
 mod mass;
 mod pull_back;
 mod shear_bend;
+mod support;
 mod taper;
 mod tapered_radial;
 mod twist;

@@ -1,10 +1,9 @@
 //! The kernel over many points: columns in, columns out, eight points at a time without a branch.
-//!
-//! The same formulas as [`super::kernel`], which is the reference in the test.
 
-use super::parameters::{COUNT, EXPONENT, Family, Parameters, RING};
+use super::kernel::{BENT, Block, RINGED, TAPERED, TWISTED, evaluate};
+use super::parameters::{COUNT, Family, POSITION, Parameters, Row};
 use crate::Vector;
-use crate::numeric::lanes::{Job, WIDTH, dispatch, exp, ln};
+use crate::numeric::lanes::{Job, WIDTH, dispatch};
 
 /// Points as columns, padded with far points to a multiple of [`WIDTH`].
 #[derive(Clone, Debug, Default)]
@@ -49,17 +48,19 @@ impl Sample {
     pub(super) fn point(&self, i: usize) -> Vector {
         Vector::new(self.columns[0][i], self.columns[1][i], self.columns[2][i])
     }
+
+    pub(super) fn points(&self) -> impl Iterator<Item = Vector> + '_ {
+        (0..self.count).map(|i| self.point(i))
+    }
 }
 
-/// First-order distances and their derivatives, a column a parameter; padded like the sample.
+/// First-order distances and their derivatives, a column a parameter; padded like the sample. Columns of parameters
+/// that the family lacks hold nothing of use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Evaluation {
     pub(super) distances: Vec<f64>,
     pub(super) rows: [Vec<f64>; COUNT],
 }
-
-/// What stands in for a distance that is not a number: far away.
-const FAR: f64 = 10.0;
 
 impl Evaluation {
     /// Distances and derivatives of all points of `sample`.
@@ -69,186 +70,153 @@ impl Evaluation {
         for row in &mut self.rows {
             row.resize(padded, 0.0);
         }
-        match s.family {
-            Family::Superellipsoid => dispatch(Fill::<false, true> { s, sample, out: self }),
-            Family::Supertoroid => dispatch(Fill::<true, true> { s, sample, out: self }),
-        }
+        self.run::<true>(s, sample);
     }
 
     /// Distances alone.
     pub(super) fn fill_distances(&mut self, s: &Parameters, sample: &Sample) {
         self.distances.resize(sample.columns[0].len(), 0.0);
+        self.run::<false>(s, sample);
+    }
+
+    fn run<const JACOBIAN: bool>(&mut self, s: &Parameters, sample: &Sample) {
+        const TAPERED_BENT: u8 = TAPERED | BENT;
+        let out = self;
         match s.family {
-            Family::Superellipsoid => dispatch(Fill::<false, false> { s, sample, out: self }),
-            Family::Supertoroid => dispatch(Fill::<true, false> { s, sample, out: self }),
+            Family::Superellipsoid => dispatch(Fill::<0, JACOBIAN> { s, sample, out }),
+            Family::Supertoroid => dispatch(Fill::<RINGED, JACOBIAN> { s, sample, out }),
+            Family::Tapered => dispatch(Fill::<TAPERED, JACOBIAN> { s, sample, out }),
+            Family::Bent => dispatch(Fill::<BENT, JACOBIAN> { s, sample, out }),
+            Family::Twisted => dispatch(Fill::<TWISTED, JACOBIAN> { s, sample, out }),
+            Family::TaperedBent => dispatch(Fill::<TAPERED_BENT, JACOBIAN> { s, sample, out }),
         }
+    }
+
+    /// The direction in which the distance of a point grows fastest: the outward normal but for what the surface's
+    /// curvature turns it on the way to the point.
+    pub(super) fn outwards(&self, i: usize) -> Vector {
+        -Vector::from_fn(|k, _| self.rows[POSITION + k][i])
+    }
+
+    /// The derivatives at one point.
+    pub(super) fn row(&self, s: &Parameters, i: usize) -> Row {
+        std::array::from_fn(|k| if s.family.has(k) { self.rows[k][i] } else { 0.0 })
     }
 }
 
-struct Fill<'a, const TOROID: bool, const JACOBIAN: bool> {
+struct Fill<'a, const PARTS: u8, const JACOBIAN: bool> {
     s: &'a Parameters,
     sample: &'a Sample,
     out: &'a mut Evaluation,
 }
 
-/// One block of results.
-struct Block {
-    distance: [f64; WIDTH],
-    rows: [[f64; WIDTH]; COUNT],
-}
-
-impl<const TOROID: bool, const JACOBIAN: bool> Job for Fill<'_, TOROID, JACOBIAN> {
+impl<const PARTS: u8, const JACOBIAN: bool> Job for Fill<'_, PARTS, JACOBIAN> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let [x, y, z] = &self.sample.columns;
         let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
         let blocks = blocks.zip(z.as_chunks::<WIDTH>().0).enumerate();
-        let mut block = Block { distance: [0.0; WIDTH], rows: [[0.0; WIDTH]; COUNT] };
+        let mut block = Block::new();
         for (b, ((x, y), z)) in blocks {
-            evaluate::<FUSED, TOROID, JACOBIAN>(self.s, [x, y, z], &mut block);
+            evaluate::<FUSED, PARTS, JACOBIAN>(self.s, [x, y, z], &mut block);
             let at = b * WIDTH..(b + 1) * WIDTH;
             self.out.distances[at.clone()].copy_from_slice(&block.distance);
             if !JACOBIAN {
                 continue;
             }
-            for (column, values) in self.out.rows.iter_mut().zip(&block.rows) {
-                column[at.clone()].copy_from_slice(values);
+            for (k, (column, values)) in self.out.rows.iter_mut().zip(&block.rows).enumerate() {
+                if self.s.family.has(k) {
+                    column[at.clone()].copy_from_slice(values);
+                }
             }
         }
-    }
-}
-
-/// Weights of two arguments given by their logarithms, as [`crate::numeric::superellipse::log_layer`]:
-/// `(log norm, first, second, entropy, spread)`.
-#[inline(always)]
-fn layer<const FUSED: bool>(u: f64, v: f64, p: f64) -> (f64, f64, f64, f64, f64) {
-    let spread = p * (u - v);
-    let t = exp::<FUSED>(-spread.abs());
-    let l = ln::<FUSED>(1.0 + t);
-    let major = 1.0 / (1.0 + t);
-    let minor = t * major;
-    let (first, second) = if spread > 0.0 { (major, minor) } else { (minor, major) };
-    let larger = if u > v { u } else { v };
-    (larger + l / p, first, second, l + spread.abs() * minor, spread)
-}
-
-/// Not nearer to a symmetry plane than 1e-7: the limits are the same.
-#[inline(always)]
-fn off_plane(v: f64) -> f64 {
-    let floor = 1e-7f64.copysign(v);
-    if v.abs() < 1e-7 { floor } else { v }
-}
-
-#[inline(always)]
-fn finite(v: f64, otherwise: f64) -> f64 {
-    if v.abs() < 1e100 { v } else { otherwise }
-}
-
-#[inline(always)]
-fn evaluate<const FUSED: bool, const TOROID: bool, const JACOBIAN: bool>(
-    s: &Parameters,
-    [x, y, z]: [&[f64; WIDTH]; 3],
-    out: &mut Block,
-) {
-    let r = s.rotation.matrix();
-    let t = s.position;
-    let [l1, l2, l3] = s.log_axes;
-    let [e1, e2] = s.exponents;
-    let (p1, p2) = (2.0 / e1, 2.0 / e2);
-    for i in 0..WIDTH {
-        let (dx, dy, dz) = (x[i] - t.x, y[i] - t.y, z[i] - t.z);
-        let qx = off_plane(r.m11 * dx + r.m21 * dy + r.m31 * dz);
-        let qy = off_plane(r.m12 * dx + r.m22 * dy + r.m32 * dz);
-        let qz = off_plane(r.m13 * dx + r.m23 * dy + r.m33 * dz);
-        let (ix, iy, iz) = (1.0 / qx, 1.0 / qy, 1.0 / qz);
-        let (log_planar, planar1, planar2, planar_entropy, planar_spread) =
-            layer::<FUSED>(ln::<FUSED>(qx.abs()) - l1, ln::<FUSED>(qy.abs()) - l2, p2);
-        let radius = if TOROID { exp::<FUSED>(log_planar) } else { 1.0 };
-        let offset = if TOROID { off_plane(radius - s.ring) } else { 1.0 };
-        let log_offset = if TOROID { ln::<FUSED>(offset.abs()) } else { log_planar };
-        let (log_gauge, whole1, whole2, whole_entropy, whole_spread) =
-            layer::<FUSED>(log_offset, ln::<FUSED>(qz.abs()) - l3, p1);
-        let g = exp::<FUSED>(log_gauge);
-        let slope = if TOROID { radius / offset } else { 1.0 };
-        let across = g * whole1 * slope;
-        let (vx, vy, vz) = (across * planar1 * ix, across * planar2 * iy, g * whole2 * iz);
-        let square = vx * vx + vy * vy + vz * vz;
-        let square = if square < 1e-18 { 1e-18 } else { square };
-        let by_gauge = 1.0 / square.sqrt();
-        let d = (g - 1.0) * by_gauge;
-        let usable = d.abs() < 1e100;
-        out.distance[i] = if usable { d } else { FAR };
-        if !JACOBIAN {
-            continue;
-        }
-
-        let inverse = by_gauge * by_gauge;
-        let (bx, by, bz) = (vx * vx * inverse, vy * vy * inverse, vz * vz * inverse);
-        let by_s1 = -d * ((bx + by) * whole2 - bz * whole1);
-        let by_s2 = -d * (bx * planar2 - by * planar1);
-        let by_ring = if TOROID { -d * (bx + by) } else { 0.0 };
-        let by_offset = by_gauge * whole1 + by_s1 * p1 - by_ring;
-        let by_radius = by_ring + by_offset * slope;
-        let by_x = by_radius * planar1 + by_s2 * p2;
-        let by_y = by_radius * planar2 - by_s2 * p2;
-        let by_z = by_gauge * whole2 - by_s1 * p1;
-        let (ux, uy, uz) = ((by_x + d * bx) * ix, (by_y + d * by) * iy, (by_z + d * bz) * iz);
-
-        let keep = |v: f64| if usable { finite(v, 0.0) } else { 0.0 };
-        out.rows[0][i] = keep(-by_x);
-        out.rows[1][i] = keep(-by_y);
-        out.rows[2][i] = keep(-by_z);
-        out.rows[RING][i] = if TOROID { keep(-by_offset / offset) } else { 0.0 };
-        out.rows[EXPONENT][i] = keep(0.5 * by_gauge * whole_entropy - by_s1 * whole_spread / e1);
-        out.rows[EXPONENT + 1][i] =
-            keep(0.5 * by_radius * planar_entropy - by_s2 * planar_spread / e2);
-        out.rows[6][i] = keep(-(r.m11 * ux + r.m12 * uy + r.m13 * uz));
-        out.rows[7][i] = keep(-(r.m21 * ux + r.m22 * uy + r.m23 * uz));
-        out.rows[8][i] = keep(-(r.m31 * ux + r.m32 * uy + r.m33 * uz));
-        out.rows[9][i] = keep(uy * qz - uz * qy);
-        out.rows[10][i] = keep(uz * qx - ux * qz);
-        out.rows[11][i] = keep(ux * qy - uy * qx);
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::fit::kernel::distance;
+    use crate::Point;
+    use crate::fit::pull_back::unbend;
     use crate::numeric::random::Stream;
+    use crate::shape::Implicit;
     use nalgebra::Rotation3;
 
+    /// A body with parameters from everywhere.
+    pub(in crate::fit) fn some_body(family: Family, random: &mut Stream) -> Parameters {
+        let mut s = Parameters {
+            log_axes: std::array::from_fn(|_| random.between(-0.8, 0.3)),
+            ring: random.between(1.3, 4.0),
+            exponents: std::array::from_fn(|_| random.between(0.25, 1.8)),
+            position: Vector::from_fn(|_, _| random.between(-0.2, 0.2)),
+            rotation: Rotation3::new(Vector::from_fn(|_, _| random.normal())),
+            taper: std::array::from_fn(|_| random.between(-0.7, 0.7)),
+            twist: random.between(-0.3, 0.3),
+            ..Parameters::ball(family)
+        };
+        let reach = s.log_axes.iter().map(|a| a.exp()).fold(0.0, f64::max);
+        s.bend = std::array::from_fn(|_| random.between(-0.4, 0.4) / reach);
+        s
+    }
+
+    /// False for points that no taper reaches: they are far outside and have no say.
+    fn is_reached(s: &Parameters, x: &Vector) -> bool {
+        let q = s.rotation.inverse_transform_vector(&(x - s.position)).into();
+        let z = if s.family.is_bent() { unbend::<false>(&q, &s.bend).0.point[2] } else { q[2] };
+        let factor = |k: &f64| 1.0 + k * z / s.log_axes[2].exp();
+        !s.family.is_tapered() || s.taper.iter().all(|k| factor(k) > 0.11)
+    }
+
     #[test]
-    fn columns_agree_with_the_kernel() {
+    fn distances_are_those_of_the_shapes() {
         let mut random = Stream::new(5, 0);
-        let mut worst = 0.0f64;
-        for case in 0..200 {
-            let family = if case % 2 == 0 { Family::Superellipsoid } else { Family::Supertoroid };
-            let s = Parameters {
-                family,
-                log_axes: std::array::from_fn(|_| random.between(-1.5, 0.5)),
-                ring: random.between(1.2, 5.0),
-                exponents: std::array::from_fn(|_| random.between(0.1, 1.9)),
-                position: Vector::from_fn(|_, _| random.between(-0.3, 0.3)),
-                rotation: Rotation3::new(Vector::from_fn(|_, _| random.normal())),
-            };
-            let points: Vec<Vector> =
-                (0..21).map(|_| Vector::from_fn(|_, _| random.between(-2.0, 2.0))).collect();
+        let mut seen = 0;
+        for case in 0..600 {
+            let s = some_body(Family::ALL[case % 6], &mut random);
+            let Ok(surface) = s.surface(&Vector::zeros(), 1.0) else { continue };
+            let points = (0..21).map(|_| Vector::from_fn(|_, _| random.between(-1.5, 1.5)));
+            let sample = Sample::new(points);
             let mut all = Evaluation::default();
-            all.fill(&s, &Sample::new(points.iter().copied()));
-            for (i, x) in points.iter().enumerate() {
-                let mut row = [0.0; COUNT];
-                let d = distance::<true>(&s, x, &mut row);
-                if !d.is_finite() || d.abs() > 5.0 {
-                    continue;
-                }
-                let scale = 1.0 + row.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-                worst = worst.max((all.distances[i] - d).abs() / (1.0 + d.abs()));
-                for (k, v) in row.iter().enumerate().filter(|(k, _)| s.is_active(*k)) {
-                    worst = worst.max((all.rows[k][i] - v).abs() / scale);
+            all.fill_distances(&s, &sample);
+            for (x, d) in sample.points().zip(&all.distances) {
+                let expected = surface.first_order_distance(&Point::from(x));
+                if d.abs() < 1.0 && is_reached(&s, &x) {
+                    seen += 1;
+                    assert!((d - expected).abs() < 1e-9, "case {case}: {d} is not {expected}");
                 }
             }
         }
-        assert!(worst < 1e-9, "{worst}");
+        assert!(seen > 5000, "{seen}");
+    }
+
+    #[test]
+    fn the_derivative_is_complete() {
+        let mut random = Stream::new(3, 0);
+        let mut seen = 0;
+        for case in 0..1200 {
+            let s = some_body(Family::ALL[case % 6], &mut random);
+            let sample =
+                Sample::new((0..8).map(|_| Vector::from_fn(|_, _| random.between(-2.0, 2.0))));
+            let mut at = Evaluation::default();
+            at.fill(&s, &sample);
+            let (h, mut sides) = (1e-6, [Evaluation::default(), Evaluation::default()]);
+            for k in (0..COUNT).filter(|k| s.family.has(*k)) {
+                for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                    let mut step = [0.0; COUNT];
+                    step[k] = sign * h;
+                    side.fill_distances(&s.stepped(&step), &sample);
+                }
+                for i in (0..8)
+                    .filter(|i| at.distances[*i].abs() < 0.7 && is_reached(&s, &sample.point(*i)))
+                {
+                    let numeric = (sides[0].distances[i] - sides[1].distances[i]) / (2.0 * h);
+                    let analytic = at.rows[k][i];
+                    let error = (numeric - analytic).abs() / (1.0 + analytic.abs());
+                    assert!(error < 2e-4, "case {case} parameter {k}: {numeric} not {analytic}");
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 20_000, "{seen}");
     }
 }

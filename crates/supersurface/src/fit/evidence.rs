@@ -1,7 +1,6 @@
 //! Which family: by the likelihood of the points and by whether the hole is really seen.
 
-use super::kernel::distance;
-use super::parameters::{COUNT, Family};
+use super::columns::{Evaluation, Sample};
 use super::solver::Hypothesis;
 use crate::Vector;
 
@@ -27,7 +26,7 @@ pub(super) fn shows_hole(
     viewpoint: Option<Vector>,
 ) -> bool {
     let s = &toroid.parameters;
-    if s.family != Family::Supertoroid {
+    if !s.family.is_ring() {
         return false;
     }
     let axes = s.log_axes.map(f64::exp);
@@ -40,7 +39,9 @@ pub(super) fn shows_hole(
     let mouth =
         viewpoint.map(|v| s.rotation.inverse_transform_vector(&(v - s.position)).z.signum());
     let (mut inner, mut blocked, mut inliers) = (0usize, 0usize, 0usize);
-    for p in points {
+    let mut all = Evaluation::default();
+    all.fill_distances(s, &Sample::new(points.iter().copied()));
+    for (p, d) in points.iter().zip(&all.distances) {
         let q = s.rotation.inverse_transform_vector(&(p - s.position));
         let radius = crate::numeric::superellipse::norm(
             (q.x / axes[0]).abs(),
@@ -51,7 +52,6 @@ pub(super) fn shows_hole(
         if radius < 0.8 * (s.ring - 1.0) && q.z.abs() < 1.2 * axes[2] && before_floor {
             blocked += 1;
         }
-        let d = distance::<false>(s, p, &mut [0.0; COUNT]);
         if d.abs() < 4.0 * toroid.mixture.scale {
             inliers += 1;
             // on the wall of the hole, not on the ridge over it

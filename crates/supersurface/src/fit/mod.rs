@@ -30,6 +30,7 @@ mod free_space;
 mod kernel;
 mod noise;
 mod parameters;
+mod pull_back;
 mod rays;
 mod search;
 mod solver;
@@ -67,16 +68,34 @@ impl<'a> View<'a> {
 }
 
 /// How to fit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
-    /// The family; `None` lets the evidence choose.
-    pub family: Option<Family>,
+    /// The families among which the evidence chooses; all by default.
+    pub families: &'static [Family],
+}
+
+impl FitOptions {
+    /// Superellipsoids and supertoroids: what grasp tables know.
+    pub const UNDEFORMED: Self = Self { families: &[Family::Superellipsoid, Family::Supertoroid] };
+
+    /// One family.
+    pub const fn only(family: Family) -> Self {
+        Self { families: family.alone() }
+    }
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self { families: &Family::ALL }
+    }
 }
 
 /// A recovered supersurface and how sure it is.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Fit {
+    /// The family of the shape.
+    pub family: Family,
     /// The shape in the frame of the points.
     pub surface: Posed<Surface>,
     /// Scale of the inliers' scatter about the surface (of a Student-t with 3 degrees of freedom), in

@@ -4,7 +4,7 @@
 //! a toroid may have two, so samples choose the deeper one first. All lines are searched side by side.
 
 use super::columns::{Evaluation, Sample};
-use super::parameters::{Family, Parameters};
+use super::parameters::Parameters;
 use crate::Vector;
 
 /// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
@@ -54,7 +54,7 @@ impl Rays {
             Some(Line { way: end - from, low, high, deepest: low, depth: f64::INFINITY })
         }));
         let mut halvings = HALVINGS;
-        if s.family == Family::Supertoroid {
+        if s.family.is_ring() || s.family.is_deformed() {
             self.choose_valleys(s, from);
             halvings -= 2;
         }
@@ -65,9 +65,7 @@ impl Rays {
             for (i, line) in self.lines.iter_mut().enumerate() {
                 let t = middle(line);
                 line.take(t, self.evaluation.distances[i]);
-                // moving the body along its normal lowers the distance: the row of the position is -n
-                let slope: f64 =
-                    (0..3).map(|k| -self.evaluation.rows[6 + k][i] * line.way[k]).sum();
+                let slope = self.evaluation.outwards(i).dot(&line.way);
                 if slope > 0.0 { line.high = t } else { line.low = t }
             }
         }

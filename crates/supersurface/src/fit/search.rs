@@ -46,9 +46,9 @@ const SUPPORT_TOLERANCE: f64 = 0.01;
 
 pub(super) fn search(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
     let cloud = Normalised::new(view)?;
-    let (hypothesis, margin) = match options.family {
-        Some(family) => (cloud.best(family), 0.0),
-        None => cloud.choose(),
+    let (hypothesis, margin) = match options.families {
+        [family] => (cloud.best(*family), 0.0),
+        _ => cloud.choose(),
     };
     cloud.judge(view, &hypothesis, margin)
 }
@@ -169,7 +169,7 @@ impl Normalised {
             .iter()
             .map(|h| finer(h, &mut work))
             .min_by(|a, b| a.cost.total_cmp(&b.cost))
-            .unwrap_or_else(|| begin(&ball(family), &self.terms));
+            .unwrap_or_else(|| begin(&Parameters::ball(family), &self.terms));
         for relative in relatives(&best.parameters, self.terms.viewpoint) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(0.05);
@@ -260,6 +260,7 @@ impl Normalised {
             return Err(FitError::NoAgreement { share });
         }
         Ok(Fit {
+            family: s.family,
             surface: s.surface(&self.centre, self.scale)?,
             noise: h.mixture.scale * self.scale,
             residual: quantile(&mut distances, 0.5) * self.scale,
@@ -294,17 +295,6 @@ fn coarse_schedule(h: &Hypothesis, rounds: usize) -> Schedule {
 
 fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
     Schedule { rounds, rays, scale, decay: 0.7, floor: NOISE_FLOOR, tolerance: 0.02 }
-}
-
-fn ball(family: Family) -> Parameters {
-    Parameters {
-        family,
-        log_axes: [0.0; 3],
-        ring: 2.0,
-        exponents: [1.0; 2],
-        position: Vector::zeros(),
-        rotation: nalgebra::Rotation3::identity(),
-    }
 }
 
 /// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the

@@ -45,13 +45,14 @@ pub(super) struct Workspace {
 
 impl Workspace {
     /// The points' part of the normal equations at the present body.
-    fn normal(&mut self, mixture: &Mixture, points: usize) -> Normal {
+    fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> Normal {
         self.weights.clear();
         self.weights.extend(self.now.distances[..points].iter().map(|d| mixture.weight(*d)));
         self.weights.resize(self.now.distances.len(), 0.0);
         self.weighted.resize(self.weights.len(), 0.0);
         let mut normal = Normal::zero();
         dispatch(Accumulate {
+            family,
             evaluation: &self.now,
             weights: &self.weights,
             weighted: &mut self.weighted,
@@ -67,7 +68,7 @@ impl Workspace {
 
     /// Looks for the lines of sight that a body intrudes on. Only a toroid can hide its own far wall.
     fn look(&mut self, s: &Parameters, terms: &Terms, rays: usize) {
-        let own = s.family == Family::Supertoroid;
+        let own = s.family.is_ring();
         terms.intrusions(s, rays, own, &mut self.search, &mut self.intrusions);
     }
 
@@ -78,6 +79,7 @@ impl Workspace {
 
 /// `Jᵀ W J` and `Jᵀ W d`, a column at a time.
 struct Accumulate<'a> {
+    family: Family,
     evaluation: &'a Evaluation,
     weights: &'a [f64],
     weighted: &'a mut [f64],
@@ -88,13 +90,14 @@ impl Job for Accumulate<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let Evaluation { distances, rows } = self.evaluation;
-        for (i, row) in rows.iter().enumerate() {
+        let has = |(i, _): &(usize, &Vec<f64>)| self.family.has(*i);
+        for (i, row) in rows.iter().enumerate().filter(has) {
             for ((w, weight), value) in self.weighted.iter_mut().zip(self.weights).zip(row) {
                 *w = weight * value;
             }
             self.normal.gradient[i] = dot::<FUSED>(self.weighted, distances);
-            for (entry, other) in self.normal.matrix[i].iter_mut().zip(&rows[..=i]) {
-                *entry = dot::<FUSED>(self.weighted, other);
+            for (j, other) in rows[..=i].iter().enumerate().filter(has) {
+                self.normal.matrix[i][j] = dot::<FUSED>(self.weighted, other);
             }
         }
     }
@@ -119,7 +122,7 @@ pub(super) fn refine(
     mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
         work.look(&s, terms, schedule.rays);
-        let mut normal = work.normal(&mixture, n);
+        let mut normal = work.normal(s.family, &mixture, n);
         terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
         let before = normal.cost;
         let mut gain = None;
@@ -169,7 +172,7 @@ fn solve(s: &Parameters, normal: &Normal, damping: f64) -> Option<Row> {
     let mut free = [0usize; COUNT];
     let mut n = 0;
     for i in 0..COUNT {
-        if s.is_active(i) && !s.is_held(i, normal.gradient[i]) {
+        if s.family.has(i) && !s.is_held(i, normal.gradient[i]) {
             free[n] = i;
             n += 1;
         }

@@ -17,6 +17,10 @@ const TAIL: f64 = 0.02;
 const DEPTHS: [f64; 2] = [0.3, 1.0];
 /// Exponents of every start.
 const EXPONENT: f64 = 0.6;
+/// Half the angle of the bends from which is searched, in radians.
+const BENDING: f64 = 0.35;
+/// Turns of the twists from which is searched.
+const TWIST: f64 = 0.12;
 /// Two frames whose axes agree within this cosine are one.
 const SAME_AXIS: f64 = 0.985;
 
@@ -225,23 +229,36 @@ impl Extents {
             let columns = order.map(|k| Vector::from(frame.axes.column(k)));
             let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&columns));
             let start = Parameters {
-                family,
                 log_axes: axes.map(f64::ln),
-                ring: 2.0,
                 exponents: [EXPONENT; 2],
                 position,
                 rotation,
+                ..Parameters::ball(family)
             };
-            match family {
-                Family::Superellipsoid => {
-                    out.push(start);
-                    if axes[0].max(axes[1]) < 1.5 * axes[0].min(axes[1]) {
-                        out.push(turned(&start, axes));
-                    }
-                }
-                Family::Supertoroid => out.push(ringed(&start, axes, &frame.points)),
+            if family.is_ring() {
+                out.push(ringed(&start, axes, &frame.points));
+                continue;
+            }
+            let square = axes[0].max(axes[1]) < 1.5 * axes[0].min(axes[1]);
+            for start in [Some(start), square.then(|| turned(&start, axes))].into_iter().flatten() {
+                deformed(&start, axes[2], out);
             }
         }
+    }
+}
+
+/// The start with the deformations from which its family is searched: four ways to bend, two to twist; a taper is
+/// found from none.
+fn deformed(start: &Parameters, height: f64, out: &mut Vec<Parameters>) {
+    if start.family.is_bent() {
+        let k = BENDING / height;
+        out.extend(
+            [[k, 0.0], [0.0, k], [-k, 0.0], [0.0, -k]].map(|bend| Parameters { bend, ..*start }),
+        );
+    } else if start.family.is_twisted() {
+        out.extend([-TWIST, TWIST].map(|twist| Parameters { twist, ..*start }));
+    } else {
+        out.push(*start);
     }
 }
 

@@ -3,18 +3,19 @@
 
 use nalgebra::{Matrix3, Rotation3};
 
-use super::parameters::{EXPONENTS, Family, Parameters, RINGS};
+use super::parameters::{EXPONENTS, Parameters, RINGS};
 use crate::Vector;
 
 /// Bodies that are nearly `s`: other axis roles, the 45 degree dual, other hidden depths, other holes.
 pub(super) fn relatives(s: &Parameters, viewpoint: Option<Vector>) -> Vec<Parameters> {
     let mut out = Vec::new();
-    match s.family {
-        Family::Superellipsoid => {
-            out.extend([1, 2].map(|shift| cycled(s, shift)));
-            out.extend(dual(s));
-        }
-        Family::Supertoroid => out.extend([0.6, 1.5].map(|factor| other_hole(s, factor))),
+    if s.family.is_ring() {
+        out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
+    } else if !s.family.is_deformed() {
+        out.extend([1, 2].map(|shift| cycled(s, shift)));
+        out.extend(dual(s));
+    } else {
+        out.extend(dual(s));
     }
     if let Some(viewpoint) = viewpoint {
         out.extend([0.6, 1.6].map(|factor| other_depth(s, &viewpoint, factor)));

@@ -23,7 +23,7 @@ pub enum Objects {
 }
 
 /// How to run the pipeline.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Where the objects come from.
     pub objects: Objects,
@@ -33,6 +33,17 @@ pub struct Options {
     pub fit: FitOptions,
     /// How to plan grasps.
     pub grasp: GraspOptions,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            objects: Objects::default(),
+            segment: SegmentOptions::default(),
+            fit: FitOptions::UNDEFORMED,
+            grasp: GraspOptions::default(),
+        }
+    }
 }
 
 /// One object; one that fails is a row of the report, never its end.

@@ -68,6 +68,15 @@ impl From<Surface> for Solid {
         match surface {
             Surface::Superellipsoid(s) => Self::Superellipsoid(s),
             Surface::Supertoroid(s) => Self::Supertoroid(s),
+            Surface::Tapered(s) => Self::Tapered(Box::new(s.mapped(Self::from))),
+            Surface::Twisted(s) => Self::Twisted(Box::new(s.mapped(Self::from))),
+            Surface::Bent(s) => Self::Bent(Box::new(s.mapped(Self::from))),
+            Surface::TaperedBent(s) => {
+                let cone = |s: Deformed<Superellipsoid, Taper>| {
+                    Self::Tapered(Box::new(s.mapped(Self::from)))
+                };
+                Self::Bent(Box::new(s.mapped(cone)))
+            }
         }
     }
 }

@@ -1,0 +1,81 @@
+//! One fit as JSON, for programs: format `supersurface-fit`, version 1 (`docs/fit.md`).
+//!
+//! Lengths are metres, angles radians, quaternions `wxyz`; the pose is in the frame of the cloud.
+
+use serde::Serialize;
+use supersurface::fit::{Fit, FitError};
+
+use crate::surface_row::SurfaceRow;
+
+/// What a fit says beside the result.
+#[derive(Clone, Copy, Debug)]
+pub struct FitHead<'a> {
+    /// Name of the cloud.
+    pub source: &'a str,
+    /// Points that were read.
+    pub points: usize,
+    /// CPU seconds of the fit alone.
+    pub cpu_seconds: f64,
+    /// Seconds of the fit alone by the clock.
+    pub seconds: f64,
+    /// What the reader and the unit check have to say.
+    pub warnings: &'a [String],
+}
+
+/// The JSON text of a fit, or of why there is none.
+pub fn fit_json(result: Result<&Fit, &FitError>, head: &FitHead<'_>) -> String {
+    let fit = result.ok();
+    let file = File {
+        format: "supersurface-fit",
+        version: 1,
+        source: head.source,
+        points: head.points,
+        status: if fit.is_some() { "ok" } else { "failed" },
+        error: result.err().map(ToString::to_string),
+        surface: fit.map(|f| SurfaceRow::new(&f.surface)),
+        quality: fit.map(QualityRow::new),
+        warnings: head.warnings,
+        cpu_s: head.cpu_seconds,
+        time_s: head.seconds,
+    };
+    // plain structs of numbers and strings: serialisation has nothing to fail on
+    serde_json::to_string_pretty(&file).unwrap_or_default()
+}
+
+#[derive(Serialize)]
+struct File<'a> {
+    format: &'static str,
+    version: u32,
+    source: &'a str,
+    points: usize,
+    status: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    surface: Option<SurfaceRow>,
+    #[serde(flatten)]
+    quality: Option<QualityRow>,
+    warnings: &'a [String],
+    cpu_s: f64,
+    time_s: f64,
+}
+
+#[derive(Serialize)]
+struct QualityRow {
+    family: &'static str,
+    family_margin: f64,
+    residual: f64,
+    noise: f64,
+    inlier_share: f64,
+}
+
+impl QualityRow {
+    fn new(fit: &Fit) -> Self {
+        Self {
+            family: fit.family.name(),
+            family_margin: fit.margin,
+            residual: fit.residual,
+            noise: fit.noise,
+            inlier_share: fit.inlier_share(),
+        }
+    }
+}
