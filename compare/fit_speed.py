@@ -176,7 +176,7 @@ def arguments():
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", metavar="DATA", type=Path, help="folder with index.json and the clouds it lists")
-    parser.add_argument("--ems", required=True, help="where EMS (Python) is installed: its checkout, environment or package")  # fmt: skip
+    parser.add_argument("--ems", required=True, help="where EMS is: its checkout, environment or package folder")
     parser.add_argument("--supersurface", required=True, help="our program")
     parser.add_argument("--python", help="the Python with EMS's packages [that of --ems's environment, or this one]")
     parser.add_argument("--w", type=share, default=0.1, help="EMS's outlier ratio, 0 to 1 [0.1, its own default]")
