@@ -61,6 +61,7 @@ class FitSpeed(unittest.TestCase):
         self.folder = Path(folder.name)
         self.peer = self.folder / "peer"
         (self.peer / "EMS").mkdir(parents=True)
+        (self.peer / "EMS" / "__init__.py").touch()  # comes before a real EMS that is installed
         (self.peer / "EMS" / "EMS_recovery.py").write_text(textwrap.dedent(PEER))
         for package in ("scipy", "numba"):
             if not importlib.util.find_spec(package):
