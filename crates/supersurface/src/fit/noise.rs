@@ -5,6 +5,8 @@
 //! should explain. On single views, whose noise acts along the rays and grows at edges, it is a Student-t
 //! with 3 degrees of freedom.
 
+use crate::numeric::lanes::{Job, WIDTH, dispatch, exp, ln};
+
 /// The law of the inliers' distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Law {
@@ -41,66 +43,138 @@ const T3: f64 = 0.367_552_596_947_861_4;
 /// Normalising constant of the Gaussian: 1/√(2π).
 const GAUSS: f64 = 0.398_942_280_401_432_7;
 
+/// The mixture at one distance: probability of belonging, equivalent weight of `d²/scale²`, density.
+#[derive(Clone, Copy)]
+struct Share {
+    belongs: f64,
+    weight: f64,
+    density: f64,
+}
+
 impl Mixture {
-    /// `(density of the law, equivalent weight of d² over scale²)` at distance `d`.
-    #[inline]
-    fn law(&self, d: f64) -> (f64, f64) {
+    #[inline(always)]
+    fn share<const FUSED: bool>(&self, d: f64) -> Share {
         let t = d * d / (self.scale * self.scale);
-        match self.law {
-            Law::Gaussian => (GAUSS / self.scale * (-0.5 * t).exp(), 1.0),
-            Law::StudentT => {
-                let q = 1.0 / (1.0 + t / 3.0);
-                (T3 / self.scale * q * q, 4.0 / 3.0 * q)
-            }
-        }
-    }
-
-    /// `(probability of belonging, equivalent weight)` at distance `d`.
-    #[inline]
-    fn share(&self, d: f64) -> (f64, f64) {
-        let (density, weight) = self.law(d);
-        let inlier = (1.0 - self.outliers) * density;
-        (inlier / (inlier + self.outliers * self.density), weight)
-    }
-
-    /// Weight of a squared distance in the equivalent least squares problem, in 1/length².
-    #[inline]
-    pub(super) fn weight(&self, d: f64) -> f64 {
-        let (inlier, weight) = self.share(d);
-        inlier * weight / (self.scale * self.scale)
+        let q = 1.0 / (1.0 + t / 3.0);
+        let (law, weight) = match self.law {
+            Law::Gaussian => (GAUSS / self.scale * exp::<FUSED>(-0.5 * t), 1.0),
+            Law::StudentT => (T3 / self.scale * q * q, 4.0 / 3.0 * q),
+        };
+        let inlier = (1.0 - self.outliers) * law;
+        let density = inlier + self.outliers * self.density;
+        Share { belongs: inlier / density, weight, density }
     }
 
     /// Probability that a point at distance `d` belongs to the surface.
     #[inline]
     pub(super) fn belongs(&self, d: f64) -> f64 {
-        self.share(d).0
+        self.share::<false>(d).belongs
     }
 
     /// By how much the cost rises when a point at distance `d` is an outlier after all.
     pub(super) fn price_of_leaving(&self, d: f64) -> f64 {
-        let uniform = self.outliers * self.density;
-        ((1.0 - self.outliers) * self.law(d).0 / uniform).ln_1p()
+        (self.share::<false>(d).density / (self.outliers * self.density)).ln()
     }
 
-    /// Negative log-likelihood of all distances. One logarithm serves eight of them.
-    pub(super) fn cost(&self, distances: &[f64]) -> f64 {
-        let uniform = self.outliers * self.density;
-        let density = |d: &f64| (1.0 - self.outliers) * self.law(*d).0 + uniform;
-        distances.chunks(8).map(|eight| -eight.iter().map(density).product::<f64>().ln()).sum()
+    /// Weights of squared distances in the equivalent least squares problem, in 1/length², and the negative
+    /// log-likelihood of the first `count` distances; the others weigh nothing.
+    pub(super) fn weigh(&self, distances: &[f64], count: usize, weights: &mut Vec<f64>) -> f64 {
+        weights.resize(distances.len(), 0.0);
+        let mut sums = Sums::default();
+        dispatch(Weigh { mixture: self, distances, count, weights, sums: &mut sums });
+        sums.cost
     }
 
-    /// `rounds` of expectation maximisation of scale (not under `floor`) and outlier share.
-    pub(super) fn update(&mut self, distances: &[f64], floor: f64, rounds: usize) {
-        let n = distances.len() as f64;
+    /// Negative log-likelihood of the first `count` distances.
+    pub(super) fn cost(&self, distances: &[f64], count: usize) -> f64 {
+        self.sums(distances, count).cost
+    }
+
+    /// `rounds` of expectation maximisation of scale (not under `floor`) and outlier share by the first `count`
+    /// distances.
+    pub(super) fn update(&mut self, distances: &[f64], count: usize, floor: f64, rounds: usize) {
+        let n = count as f64;
         for _ in 0..rounds {
-            let (mut belonging, mut spread) = (1e-9, 0.0);
-            for d in distances {
-                let (inlier, weight) = self.share(*d);
-                belonging += inlier;
-                spread += inlier * weight * d * d;
-            }
+            let Sums { belonging, spread, .. } = self.sums(distances, count);
+            let belonging = belonging + 1e-9;
             self.scale = (spread / belonging).sqrt().min(self.law.largest_scale()).max(floor);
             self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);
+        }
+    }
+
+    fn sums(&self, distances: &[f64], count: usize) -> Sums {
+        let mut sums = Sums::default();
+        dispatch(Weigh { mixture: self, distances, count, weights: &mut [], sums: &mut sums });
+        sums
+    }
+}
+
+/// Sums over all distances.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// Probabilities of belonging.
+    belonging: f64,
+    /// Squared distances that belong, with their weights.
+    spread: f64,
+    /// Negative log-likelihood.
+    cost: f64,
+}
+
+/// One pass over padded distances; the weights are kept where there is room for them.
+struct Weigh<'a> {
+    mixture: &'a Mixture,
+    distances: &'a [f64],
+    count: usize,
+    weights: &'a mut [f64],
+    sums: &'a mut Sums,
+}
+
+impl Job for Weigh<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let precision = 1.0 / (self.mixture.scale * self.mixture.scale);
+        let mut lanes = [[0.0; WIDTH]; 3];
+        for (b, d) in self.distances.as_chunks::<WIDTH>().0.iter().enumerate() {
+            let mut weights = [0.0; WIDTH];
+            for i in 0..WIDTH {
+                // padding has no say
+                let here = if b * WIDTH + i < self.count { 1.0 } else { 0.0 };
+                let share = self.mixture.share::<FUSED>(d[i]);
+                let weight = here * share.belongs * share.weight;
+                weights[i] = weight * precision;
+                lanes[0][i] += here * share.belongs;
+                lanes[1][i] += weight * d[i] * d[i];
+                lanes[2][i] -= here * ln::<FUSED>(share.density);
+            }
+            if let Some(out) = self.weights.get_mut(b * WIDTH..(b + 1) * WIDTH) {
+                out.copy_from_slice(&weights);
+            }
+        }
+        let [belonging, spread, cost] = lanes.map(|l| l.iter().sum());
+        *self.sums = Sums { belonging, spread, cost };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_pass_is_the_sum_of_its_points() {
+        for law in [Law::Gaussian, Law::StudentT] {
+            let mixture = Mixture { law, scale: 0.1, outliers: 0.2, density: 0.5 };
+            let d: Vec<f64> = (0..16).map(|i| 0.03 * i as f64 - 0.1).collect();
+            let mut weights = Vec::new();
+            let cost = mixture.weigh(&d, 13, &mut weights);
+            let expected: f64 =
+                d[..13].iter().map(|d| -mixture.share::<false>(*d).density.ln()).sum();
+            assert!((cost - expected).abs() < 1e-12 && weights[13..] == [0.0; 3]);
+            // the weight is the slope of the cost by half the squared distance
+            for (d, w) in d[..13].iter().zip(&weights).filter(|(d, _)| d.abs() > 0.01) {
+                let cost = |d: f64| mixture.cost(&[d; 8], 1);
+                let slope = (cost(d + 1e-6) - cost(d - 1e-6)) / (2e-6 * d);
+                assert!((slope - w).abs() < 1e-4 * (1.0 + w), "{slope} {w}");
+            }
         }
     }
 }

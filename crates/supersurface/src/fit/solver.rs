@@ -46,9 +46,7 @@ pub(super) struct Workspace {
 impl Workspace {
     /// The points' part of the normal equations at the present body.
     fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> Normal {
-        self.weights.clear();
-        self.weights.extend(self.now.distances[..points].iter().map(|d| mixture.weight(*d)));
-        self.weights.resize(self.now.distances.len(), 0.0);
+        let cost = mixture.weigh(&self.now.distances, points, &mut self.weights);
         self.weighted.resize(self.weights.len(), 0.0);
         let mut normal = Normal::zero();
         dispatch(Accumulate {
@@ -58,7 +56,7 @@ impl Workspace {
             weighted: &mut self.weighted,
             normal: &mut normal,
         });
-        normal.cost = mixture.cost(&self.now.distances[..points]);
+        normal.cost = cost;
         normal
     }
 
@@ -119,7 +117,7 @@ pub(super) fn refine(
     let n = points.len();
     work.now.fill(&s, points);
     mixture.density = terms.outlier_density(&s);
-    mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
+    mixture.update(&work.now.distances, n, schedule.floor.max(annealed), 2);
     for _ in 0..schedule.rounds {
         work.look(&s, terms, schedule.rays);
         let mut normal = work.normal(s.family, &mixture, n);
@@ -135,7 +133,7 @@ pub(super) fn refine(
             work.trial.fill(&next, points);
             let mut after = Normal::zero();
             terms.add(&next, &work.beside(n, &mixture, schedule), &mut after);
-            let after = after.cost + mixture.cost(&work.trial.distances[..n]);
+            let after = after.cost + mixture.cost(&work.trial.distances, n);
             if after < before {
                 (s, gain) = (next, Some(before - after));
                 work.accept();
@@ -147,7 +145,7 @@ pub(super) fn refine(
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);
-        mixture.update(&work.now.distances[..n], schedule.floor.max(annealed), 2);
+        mixture.update(&work.now.distances, n, schedule.floor.max(annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance);
@@ -155,11 +153,11 @@ pub(super) fn refine(
             break;
         }
     }
-    mixture.update(&work.now.distances[..n], schedule.floor, 6);
+    mixture.update(&work.now.distances, n, schedule.floor, 6);
     work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
     terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);
-    let cost = mixture.cost(&work.now.distances[..n])
+    let cost = mixture.cost(&work.now.distances, n)
         + extra.cost
         + terms.spread_cost(&s, n)
         + terms.facing_cost(&mixture, points, &work.now);
