@@ -30,6 +30,7 @@ mod free_space;
 mod kernel;
 mod noise;
 mod parameters;
+mod patches;
 mod pull_back;
 mod rays;
 mod search;

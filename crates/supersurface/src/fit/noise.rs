@@ -20,7 +20,7 @@ impl Law {
     /// all of them badly.
     pub(super) const fn largest_scale(self) -> f64 {
         match self {
-            Self::Gaussian => 1.0,
+            Self::Gaussian => 0.12,
             Self::StudentT => 0.05,
         }
     }
@@ -90,14 +90,21 @@ impl Mixture {
         self.sums(distances, count).cost
     }
 
-    /// `rounds` of expectation maximisation of scale (not under `floor`) and outlier share by the first `count`
+    /// `rounds` of expectation maximisation of scale (within limits) and outlier share by the first `count`
     /// distances.
-    pub(super) fn update(&mut self, distances: &[f64], count: usize, floor: f64, rounds: usize) {
+    pub(super) fn update(
+        &mut self,
+        distances: &[f64],
+        count: usize,
+        [low, high]: [f64; 2],
+        rounds: usize,
+    ) {
         let n = count as f64;
         for _ in 0..rounds {
             let Sums { belonging, spread, .. } = self.sums(distances, count);
             let belonging = belonging + 1e-9;
-            self.scale = (spread / belonging).sqrt().min(self.law.largest_scale()).max(floor);
+            let most = high.min(self.law.largest_scale());
+            self.scale = (spread / belonging).sqrt().min(most).max(low);
             self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);
         }
     }

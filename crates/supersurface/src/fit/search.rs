@@ -4,6 +4,7 @@ use super::columns::{Evaluation, Sample};
 use super::evidence::{shows_hole, toroid_margin};
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
+use super::patches::{dense, patches};
 use super::rays::Rays;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::start::{Frame, frames, quantile, starts};
@@ -17,8 +18,8 @@ const LEAST_POINTS: usize = 12;
 /// Points that sort out the starts, that rank them, that refine the best of them, and that decide.
 const SKETCH: usize = 60;
 const COARSE: usize = 160;
-const MIDDLE: usize = 240;
-const FINE: usize = 600;
+const MIDDLE: usize = 400;
+const FINE: usize = 2000;
 /// Lines of sight that are looked at beside the middle and the fine set of points.
 const MIDDLE_RAYS: usize = 24;
 const FINE_RAYS: usize = 48;
@@ -121,15 +122,22 @@ impl Normalised {
             let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
             fine.iter().map(nearer).collect()
         });
+        let patches = patches(&fine);
+        let surely = dense(&patches);
+        let coarse = if outside.is_none() && surely.len() > COARSE / 2 {
+            Sample::new(spread(&surely, COARSE).copied())
+        } else {
+            sample(COARSE)
+        };
         let terms = Terms { support, viewpoint: outside, free, before, closed, reach };
         Ok(Self {
             centre,
             scale,
             sketch: sample(SKETCH),
-            coarse: sample(COARSE),
+            coarse,
             middle: sample(MIDDLE),
             fine: Sample::new(fine.iter().copied()),
-            frames: frames(&fine, &terms),
+            frames: frames(&fine, &patches, &terms),
             points: fine,
             terms,
         })
@@ -154,6 +162,11 @@ impl Normalised {
                 *h = refine(h, points, &self.terms, &coarse_schedule(h, rounds), &mut work);
             }
             ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            if std::env::var("SS_DEBUG").is_ok() {
+                for h in &ranked {
+                    dbg_h("coarse", h);
+                }
+            }
             ranked.truncate(kept);
         }
         let finer = |h: &Hypothesis, work: &mut Workspace| {
@@ -270,6 +283,21 @@ impl Normalised {
     }
 }
 
+pub(super) fn dbg_h(what: &str, h: &Hypothesis) {
+    let p = &h.parameters;
+    eprintln!(
+        "{what}: cost {:.2} scale {:.4} out {:.3} axes {:.3?} ring {:.2} e {:.2?} at {:.2?} area {:.2}",
+        h.cost,
+        h.mixture.scale,
+        h.mixture.outliers,
+        p.log_axes.map(f64::exp),
+        p.ring,
+        p.exponents,
+        p.position.as_slice(),
+        p.area()
+    );
+}
+
 /// First-order distances of points in normalised coordinates.
 fn distances(s: &Parameters, points: impl Iterator<Item = Vector>) -> Vec<f64> {
     let sample = Sample::new(points);
@@ -281,7 +309,7 @@ fn distances(s: &Parameters, points: impl Iterator<Item = Vector>) -> Vec<f64> {
 
 fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
     let law = if terms.closed.is_some() { Law::Gaussian } else { Law::StudentT };
-    let mixture = Mixture { law, scale: 0.1, outliers: 0.1, density: RAY_DENSITY };
+    let mixture = Mixture { law, scale: 0.1, outliers: 0.3, density: RAY_DENSITY };
     Hypothesis { parameters: *s, mixture, cost: f64::MAX }
 }
 
@@ -290,11 +318,19 @@ fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
 fn coarse_schedule(h: &Hypothesis, rounds: usize) -> Schedule {
     let size = h.parameters.half_extents().iter().sum::<f64>() / 3.0;
     let scale = if h.cost < f64::MAX { h.mixture.scale.min(0.04 * size) } else { 0.12 * size };
-    schedule(rounds, 0, scale)
+    Schedule { leash: 1.5, ..schedule(rounds, 0, scale) }
 }
 
 fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
-    Schedule { rounds, rays, scale, decay: 0.7, floor: NOISE_FLOOR, tolerance: 0.02 }
+    Schedule {
+        rounds,
+        rays,
+        scale,
+        decay: 0.7,
+        floor: NOISE_FLOOR,
+        leash: f64::INFINITY,
+        tolerance: 0.02,
+    }
 }
 
 /// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the

@@ -26,11 +26,25 @@ pub(super) struct Schedule {
     pub(super) decay: f64,
     /// Scale below which noise is never estimated.
     pub(super) floor: f64,
+    /// How many times the annealed scale the noise may be while iterating, where that is limited: then a body cannot
+    /// take outliers for noise.
+    pub(super) leash: f64,
     /// Lines of sight that are looked at.
     pub(super) rays: usize,
     /// A round that gains less than this many nats ends the search.
     pub(super) tolerance: f64,
 }
+
+impl Schedule {
+    /// Limits of the noise when the annealed scale is `annealed`.
+    fn limits(&self, annealed: f64) -> [f64; 2] {
+        let low = self.floor.max(annealed);
+        [low, self.leash * low.max(LEASHED)]
+    }
+}
+
+/// No leash holds noise below this.
+const LEASHED: f64 = 0.01;
 
 /// Buffers that are used again from one hypothesis to the next.
 #[derive(Clone, Debug, Default)]
@@ -117,7 +131,7 @@ pub(super) fn refine(
     let n = points.len();
     work.now.fill(&s, points);
     mixture.density = terms.outlier_density(&s);
-    mixture.update(&work.now.distances, n, schedule.floor.max(annealed), 2);
+    mixture.update(&work.now.distances, n, schedule.limits(annealed), 2);
     for _ in 0..schedule.rounds {
         work.look(&s, terms, schedule.rays);
         let mut normal = work.normal(s.family, &mixture, n);
@@ -145,7 +159,7 @@ pub(super) fn refine(
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);
-        mixture.update(&work.now.distances, n, schedule.floor.max(annealed), 2);
+        mixture.update(&work.now.distances, n, schedule.limits(annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance);
@@ -153,7 +167,7 @@ pub(super) fn refine(
             break;
         }
     }
-    mixture.update(&work.now.distances, n, schedule.floor, 6);
+    mixture.update(&work.now.distances, n, [schedule.floor, f64::INFINITY], 6);
     work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
     terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);

@@ -8,6 +8,7 @@
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
 use super::parameters::{Family, Parameters, RINGS};
+use super::patches::{Patch, firmest, flattest, scatter};
 use super::terms::Terms;
 use crate::Vector;
 
@@ -44,7 +45,7 @@ pub(super) struct Frame {
 }
 
 /// Frames for normalised points, without near duplicates.
-pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+pub(super) fn frames(points: &[Vector], patches: &[Patch], terms: &Terms) -> Vec<Frame> {
     let mut out: Vec<Frame> = Vec::new();
     let mut push = |axes: Matrix3<f64>, points: Vec<Vector>| {
         // two frames with the same axes differ only where outliers stretch one of them
@@ -61,27 +62,16 @@ pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
     if let Some(support) = terms.support {
         push(upright(points, &support.normal), points.to_vec());
     }
-    push(axes_of(&scatter(points.iter().copied())), points.to_vec());
-    let mut patches = patches(points);
+    push(axes_of(&scatter(points.iter())), points.to_vec());
     if !patches.is_empty() {
         let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
-        patches.sort_by(|a, b| a.curvature.total_cmp(&b.curvature));
-        let flat = &patches[..patches.len().div_ceil(2)];
+        let firm = of(&firmest(patches));
+        push(axes_of(&scatter(firm.iter())), firm);
+        let flat = flattest(patches);
         let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
-        push(axes_of(&normals), of(flat));
-        // flat and dense: what outliers are not
-        patches.sort_by(|a, b| a.looseness().total_cmp(&b.looseness()));
-        let firm = of(&patches[..patches.len().div_ceil(3)]);
-        push(axes_of(&scatter(firm.iter().copied())), firm);
+        push(axes_of(&normals), of(&flat));
     }
     out
-}
-
-/// Covariance of points about their mean.
-fn scatter(points: impl Iterator<Item = Vector> + Clone) -> Matrix3<f64> {
-    let n = points.clone().count().max(1) as f64;
-    let mean: Vector = points.clone().sum::<Vector>() / n;
-    points.map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
 }
 
 /// Eigenvectors in rising order of the eigenvalues, right-handed.
@@ -119,48 +109,6 @@ fn upright(points: &[Vector], normal: &Vector) -> Matrix3<f64> {
     let (s, c) = best.1.sin_cos();
     let x = u * c + v * s;
     Matrix3::from_columns(&[x, normal.cross(&x), *normal])
-}
-
-/// The neighbourhood of a point.
-struct Patch {
-    point: Vector,
-    normal: Vector,
-    /// Share of the least variance: 0 on a plane, 1/3 in a ball.
-    curvature: f64,
-    /// Squared distance of the farthest neighbour.
-    radius: f64,
-}
-
-impl Patch {
-    /// Small where points are dense and lie on a plane.
-    fn looseness(&self) -> f64 {
-        self.radius * (self.curvature + 0.02)
-    }
-}
-
-/// The neighbourhoods of up to 200 points; none for too few points.
-fn patches(points: &[Vector]) -> Vec<Patch> {
-    const NEIGHBOURS: usize = 10;
-    if points.len() < 3 * NEIGHBOURS {
-        return Vec::new();
-    }
-    let stride = points.len().div_ceil(200);
-    let mut near: Vec<(f64, usize)> = Vec::with_capacity(points.len());
-    let mut found = Vec::new();
-    for p in points.iter().step_by(stride) {
-        near.clear();
-        near.extend(points.iter().enumerate().map(|(i, q)| ((p - q).norm_squared(), i)));
-        near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
-        let eigen = SymmetricEigen::new(scatter(near[..=NEIGHBOURS].iter().map(|n| points[n.1])));
-        let least = eigen.eigenvalues.imin();
-        found.push(Patch {
-            point: *p,
-            normal: eigen.eigenvectors.column(least).into(),
-            curvature: eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300),
-            radius: near[NEIGHBOURS].0,
-        });
-    }
-    found
 }
 
 /// The box of a cloud along the axes of a frame.

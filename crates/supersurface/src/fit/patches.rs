@@ -1,0 +1,112 @@
+//! The neighbourhoods of points: how flat, how dense, which way they face. Surfaces are flat and dense; outliers are
+//! not.
+
+use nalgebra::{Matrix3, SymmetricEigen};
+
+use super::start::quantile;
+use crate::Vector;
+
+/// Neighbours that make a neighbourhood.
+const NEIGHBOURS: usize = 12;
+/// Most points whose neighbourhoods are looked at, and most among which neighbours are sought.
+const LOOKED_AT: usize = 320;
+const AMONG: usize = 1600;
+
+/// How much larger than the densest fifth's a neighbourhood on the surface may be.
+const LOOSENESS: f64 = 1.7;
+
+/// The neighbourhood of a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    pub(super) point: Vector,
+    /// Unit normal of the plane through the neighbours.
+    pub(super) normal: Vector,
+    /// 1 on a plane, 0 in a ball.
+    pub(super) flatness: f64,
+    /// Distance of the farthest neighbour.
+    radius: f64,
+}
+
+/// Neighbourhoods spread over the cloud; none for too few points.
+pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
+    if points.len() < 3 * NEIGHBOURS {
+        return Vec::new();
+    }
+    let stride = points.len().div_ceil(AMONG);
+    let among: Vec<Vector> = points.iter().step_by(stride).copied().collect();
+    let columns: [Vec<f32>; 3] =
+        std::array::from_fn(|k| among.iter().map(|p| p[k] as f32).collect());
+    let mut squares = vec![0f32; among.len()];
+    let mut near: Vec<(f32, u32)> = Vec::with_capacity(4 * NEIGHBOURS);
+    let mut reach = f32::INFINITY;
+    let stride = points.len().div_ceil(LOOKED_AT);
+    let mut found = Vec::with_capacity(LOOKED_AT);
+    for p in points.iter().step_by(stride) {
+        let [x, y, z] = [p.x as f32, p.y as f32, p.z as f32];
+        for (i, square) in squares.iter_mut().enumerate() {
+            let (dx, dy, dz) = (columns[0][i] - x, columns[1][i] - y, columns[2][i] - z);
+            *square = dx * dx + dy * dy + dz * dz;
+        }
+        // those within twice the last radius, or more where these are too few
+        loop {
+            near.clear();
+            let within = squares.iter().zip(0..).filter(|(s, _)| **s < reach);
+            near.extend(within.map(|(s, i)| (*s, i)));
+            if near.len() > NEIGHBOURS || reach.is_infinite() {
+                break;
+            }
+            reach *= 4.0;
+        }
+        if near.len() <= NEIGHBOURS {
+            continue;
+        }
+        near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
+        let radius = near[NEIGHBOURS].0;
+        reach = (4.0 * radius).max(f32::MIN_POSITIVE);
+        let scatter = scatter(near[..=NEIGHBOURS].iter().map(|n| &among[n.1 as usize]));
+        let eigen = SymmetricEigen::new(scatter);
+        let least = eigen.eigenvalues.imin();
+        let share = eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300);
+        found.push(Patch {
+            point: *p,
+            normal: eigen.eigenvectors.column(least).into(),
+            flatness: 1.0 - 3.0 * share,
+            radius: f64::from(radius).sqrt(),
+        });
+    }
+    found
+}
+
+/// Points whose neighbourhoods are about as dense as those of the densest: on a surface that is seen from all around,
+/// what is looser are outliers.
+pub(super) fn dense(patches: &[Patch]) -> Vec<Vector> {
+    let mut radii: Vec<f64> = patches.iter().map(|p| p.radius).collect();
+    let most = LOOSENESS * quantile(&mut radii, 0.2);
+    patches.iter().filter(|p| p.radius <= most).map(|p| p.point).collect()
+}
+
+/// The flattest half.
+pub(super) fn flattest(patches: &[Patch]) -> Vec<Patch> {
+    best(patches, patches.len().div_ceil(2), |p| p.flatness)
+}
+
+/// The third that is most flat and dense.
+pub(super) fn firmest(patches: &[Patch]) -> Vec<Patch> {
+    let mut radii: Vec<f64> = patches.iter().map(|p| p.radius).collect();
+    let typical = quantile(&mut radii, 0.5).max(1e-300);
+    best(patches, patches.len().div_ceil(3), |p| p.flatness - 0.5 * p.radius / typical)
+}
+
+fn best(patches: &[Patch], count: usize, merit: impl Fn(&Patch) -> f64) -> Vec<Patch> {
+    let mut sorted = patches.to_vec();
+    sorted.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+    sorted.truncate(count);
+    sorted
+}
+
+/// Covariance of points about their mean.
+pub(super) fn scatter<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> Matrix3<f64> {
+    let n = points.clone().count().max(1) as f64;
+    let mean: Vector = points.clone().sum::<Vector>() / n;
+    points.map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
+}
