@@ -98,10 +98,29 @@ impl Evaluation {
         -Vector::from_fn(|k, _| self.rows[POSITION + k][i])
     }
 
+    /// The unit outward normal at a point, by the same approximation.
+    pub(super) fn normal(&self, i: usize) -> Vector {
+        self.outwards(i).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
+    }
+
+    /// The way from the surface to a point, to first order; short, so that no step throws a point away.
+    pub(super) fn step(&self, i: usize) -> Vector {
+        self.normal(i) * self.distances[i].clamp(-1.0, 1.0)
+    }
+
     /// The derivatives at one point.
     pub(super) fn row(&self, s: &Parameters, i: usize) -> Row {
         std::array::from_fn(|k| if s.family.has(k) { self.rows[k][i] } else { 0.0 })
     }
+}
+
+/// First-order distances of points in normalised coordinates.
+pub(super) fn distances(s: &Parameters, points: impl Iterator<Item = Vector>) -> Vec<f64> {
+    let sample = Sample::new(points);
+    let mut evaluation = Evaluation::default();
+    evaluation.fill_distances(s, &sample);
+    evaluation.distances.truncate(sample.len());
+    evaluation.distances
 }
 
 struct Fill<'a, const PARTS: u8, const JACOBIAN: bool> {

@@ -24,16 +24,23 @@
 //! It does not promise the global optimum, and the hidden side of a single view is the simplest body that
 //! the evidence allows, not a measurement.
 
+mod bias;
+mod choose;
 mod columns;
-mod evidence;
+mod finish;
 mod free_space;
+mod judge;
 mod kernel;
+mod near;
 mod noise;
 mod parameters;
 mod patches;
+mod prepare;
 mod pull_back;
 mod rays;
+mod samples;
 mod search;
+mod smeared;
 mod solver;
 mod start;
 mod switch;
@@ -42,6 +49,10 @@ mod terms;
 pub use free_space::{free_points, outline_points};
 pub use parameters::Family;
 
+use self::choose::choose;
+use self::judge::judge;
+use self::prepare::Normalised;
+use self::search::best;
 use crate::Point;
 use crate::shape::{InvalidShape, Plane, Posed};
 use crate::surface::Surface;
@@ -157,5 +168,10 @@ pub enum FitError {
 
 /// Fits one supersurface.
 pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
-    search::search(view, options)
+    let cloud = Normalised::new(view)?;
+    let (hypothesis, margin) = match options.families {
+        [family] => (best(&cloud, *family), 0.0),
+        _ => choose(&cloud),
+    };
+    judge(&cloud, view, &hypothesis, margin)
 }

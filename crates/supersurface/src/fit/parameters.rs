@@ -168,6 +168,29 @@ impl Parameters {
         [a * outer, b * outer, c]
     }
 
+    /// Where the deformations take a point of the undeformed body, in the body's frame.
+    pub(super) fn deformed(&self, p: &Vector) -> Vector {
+        let height = self.log_axes[2].exp();
+        let mut q = *p;
+        if self.family.is_tapered() {
+            q.x *= 1.0 + self.taper[0] * p.z / height;
+            q.y *= 1.0 + self.taper[1] * p.z / height;
+        }
+        if self.family.is_twisted() {
+            let (sin, cos) = (self.twist * std::f64::consts::PI * p.z / height).sin_cos();
+            q = Vector::new(cos * q.x - sin * q.y, sin * q.x + cos * q.y, q.z);
+        }
+        let [bx, by] = self.bend;
+        let k = bx.hypot(by);
+        if self.family.is_bent() && k > 1e-12 {
+            let (sin, cos) = (k * q.z).sin_cos();
+            let inwards = (bx * q.x + by * q.y) / k;
+            let shift = (1.0 - cos) * (1.0 / k - inwards) / k;
+            q = Vector::new(q.x + bx * shift, q.y + by * shift, sin * (1.0 / k - inwards));
+        }
+        q
+    }
+
     /// Surface area, within about a tenth: between box, ellipsoid and octahedron by the mean exponent; for a
     /// toroid the ring's length times the tube's girth. Deformations change it little.
     pub(super) fn area(&self) -> f64 {

@@ -9,11 +9,8 @@ use crate::Vector;
 /// Neighbours that make a neighbourhood.
 const NEIGHBOURS: usize = 12;
 /// Most points whose neighbourhoods are looked at, and most among which neighbours are sought.
-const LOOKED_AT: usize = 320;
+const LOOKED_AT: usize = 220;
 const AMONG: usize = 1600;
-
-/// How much larger than the densest fifth's a neighbourhood on the surface may be.
-const LOOSENESS: f64 = 1.7;
 
 /// The neighbourhood of a point.
 #[derive(Clone, Copy, Debug)]
@@ -75,14 +72,6 @@ pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
         });
     }
     found
-}
-
-/// Points whose neighbourhoods are about as dense as those of the densest: on a surface that is seen from all around,
-/// what is looser are outliers.
-pub(super) fn dense(patches: &[Patch]) -> Vec<Vector> {
-    let mut radii: Vec<f64> = patches.iter().map(|p| p.radius).collect();
-    let most = LOOSENESS * quantile(&mut radii, 0.2);
-    patches.iter().filter(|p| p.radius <= most).map(|p| p.point).collect()
 }
 
 /// The flattest half.

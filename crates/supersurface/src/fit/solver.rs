@@ -1,6 +1,7 @@
 //! Damped least squares on the mixture's weights, with the noise annealed and re-estimated in each round.
 
 use super::columns::{Evaluation, Sample};
+use super::near::Feet;
 use super::noise::Mixture;
 use super::parameters::{COUNT, Family, Parameters, Row};
 use super::rays::Rays;
@@ -31,16 +32,26 @@ pub(super) struct Schedule {
     pub(super) leash: f64,
     /// Lines of sight that are looked at.
     pub(super) rays: usize,
+    /// By near-Euclidean distances over obliquity, where a viewpoint is known.
+    pub(super) near: bool,
     /// A round that gains less than this many nats ends the search.
     pub(super) tolerance: f64,
 }
 
 impl Schedule {
     /// Limits of the noise when the annealed scale is `annealed`.
-    fn limits(&self, annealed: f64) -> [f64; 2] {
+    fn limits(&self, s: &Parameters, annealed: f64) -> [f64; 2] {
         let low = self.floor.max(annealed);
-        [low, self.leash * low.max(LEASHED)]
+        [low, (self.leash * low.max(LEASHED)).min(noisiest(s))]
     }
+}
+
+/// Most noise that a body may have, as a share of its mean half extent: what is more is no surface.
+const NOISIEST: f64 = 0.15;
+
+/// Largest scale of the noise of a body.
+fn noisiest(s: &Parameters) -> f64 {
+    NOISIEST / 3.0 * s.half_extents().iter().sum::<f64>()
 }
 
 /// No leash holds noise below this.
@@ -55,6 +66,7 @@ pub(super) struct Workspace {
     weighted: Vec<f64>,
     intrusions: Vec<Vector>,
     search: Rays,
+    feet: Feet,
 }
 
 impl Workspace {
@@ -82,6 +94,14 @@ impl Workspace {
     fn look(&mut self, s: &Parameters, terms: &Terms, rays: usize) {
         let own = s.family.is_ring();
         terms.intrusions(s, rays, own, &mut self.search, &mut self.intrusions);
+    }
+
+    /// Evaluates the points for a body that is tried.
+    fn evaluate(&mut self, s: &Parameters, points: &Sample, terms: &Terms, schedule: &Schedule) {
+        match terms.viewpoint.filter(|_| schedule.near) {
+            Some(viewpoint) => self.feet.fill(s, points, &viewpoint, &mut self.trial),
+            None => self.trial.fill(s, points),
+        }
     }
 
     fn accept(&mut self) {
@@ -129,9 +149,10 @@ pub(super) fn refine(
     let mut damping = 1e-3;
     let mut failures = 0;
     let n = points.len();
-    work.now.fill(&s, points);
+    work.evaluate(&s, points, terms, schedule);
+    work.accept();
     mixture.density = terms.outlier_density(&s);
-    mixture.update(&work.now.distances, n, schedule.limits(annealed), 2);
+    mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
     for _ in 0..schedule.rounds {
         work.look(&s, terms, schedule.rays);
         let mut normal = work.normal(s.family, &mixture, n);
@@ -144,7 +165,7 @@ pub(super) fn refine(
                 continue;
             };
             let next = s.stepped(&step);
-            work.trial.fill(&next, points);
+            work.evaluate(&next, points, terms, schedule);
             let mut after = Normal::zero();
             terms.add(&next, &work.beside(n, &mixture, schedule), &mut after);
             let after = after.cost + mixture.cost(&work.trial.distances, n);
@@ -159,7 +180,7 @@ pub(super) fn refine(
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);
-        mixture.update(&work.now.distances, n, schedule.limits(annealed), 2);
+        mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance);
@@ -167,7 +188,7 @@ pub(super) fn refine(
             break;
         }
     }
-    mixture.update(&work.now.distances, n, [schedule.floor, f64::INFINITY], 6);
+    mixture.update(&work.now.distances, n, [schedule.floor, noisiest(&s)], 6);
     work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
     terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
 use super::parameters::{Family, Parameters, RINGS};
 use super::patches::{Patch, firmest, flattest, scatter};
-use super::terms::Terms;
+use super::terms::{Sight, Terms};
 use crate::Vector;
 
 /// Quantile that stands for an end of the cloud along an axis.
@@ -49,7 +49,7 @@ pub(super) fn frames(points: &[Vector], patches: &[Patch], terms: &Terms) -> Vec
     let mut out: Vec<Frame> = Vec::new();
     let mut push = |axes: Matrix3<f64>, points: Vec<Vector>| {
         // two frames with the same axes differ only where outliers stretch one of them
-        let known = terms.closed.is_none()
+        let known = terms.sight == Sight::OneSide
             && out.iter().any(|other| {
                 (0..3).all(|i| {
                     (0..3).any(|j| axes.column(i).dot(&other.axes.column(j)).abs() > SAME_AXIS)

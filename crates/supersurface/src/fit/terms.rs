@@ -23,6 +23,19 @@ pub(super) struct Support {
     pub(super) tolerance: f64,
 }
 
+/// How much of an object's surface the points can show.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Sight {
+    /// All of it; outliers are spread over a box of this volume. The points are then a density on the whole surface, and
+    /// its area enters the likelihood; on half seen bodies it must not, as it would pay for growing them.
+    AllAround { volume: f64 },
+    /// Less than all, by no known viewpoint.
+    #[default]
+    Partly,
+    /// What one viewpoint sees.
+    OneSide,
+}
+
 /// Everything beside the points that speaks about the body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Terms {
@@ -33,9 +46,8 @@ pub(super) struct Terms {
     /// Places a little before the object's own points: nothing lies between the viewpoint and them either.
     /// Only a body with a hole can hide its own far wall.
     pub(super) before: Vec<Vector>,
-    /// Volume of the cloud's box where the object was seen from all around. Then the points are a density on
-    /// the whole surface, and its area enters the likelihood; on half seen bodies it must not.
-    pub(super) closed: Option<f64>,
+    /// How much of the surface the points can show.
+    pub(super) sight: Sight,
     /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much: a
     /// side that no point shows is no reason to be larger than all that is seen.
     pub(super) reach: f64,
@@ -92,17 +104,26 @@ pub(super) struct Beside<'a> {
 const REACH_WEIGHT: f64 = 2.0;
 
 /// Outlier density a unit of normalised length where only one side is seen: along a ray it is a constant.
-pub(super) const RAY_DENSITY: f64 = 0.25;
+const RAY_DENSITY: f64 = 0.25;
+/// The same where not all is seen and no ray is known.
+const PART_DENSITY: f64 = 0.5;
 
 impl Terms {
     /// Density of outliers about a body, a unit of distance from its surface.
     pub(super) fn outlier_density(&self, s: &Parameters) -> f64 {
-        self.closed.map_or(RAY_DENSITY, |volume| (s.area() / volume).clamp(1e-4, 1e3))
+        match self.sight {
+            Sight::AllAround { volume } => (s.area() / volume).clamp(1e-4, 1e3),
+            Sight::Partly => PART_DENSITY,
+            Sight::OneSide => RAY_DENSITY,
+        }
     }
 
     /// What the points' being spread over the whole surface adds to the cost of a body.
     pub(super) fn spread_cost(&self, s: &Parameters, points: usize) -> f64 {
-        if self.closed.is_some() { points as f64 * s.area().ln() } else { 0.0 }
+        match self.sight {
+            Sight::AllAround { .. } => points as f64 * s.area().ln(),
+            Sight::Partly | Sight::OneSide => 0.0,
+        }
     }
 
     /// What the points on sides that face away from the sensor cost: it cannot have seen them there, so they
@@ -130,7 +151,7 @@ impl Terms {
         self.add_support(s, beside.points, beside.scale, to);
         add_intrusions(s, beside, to);
         self.add_reach(s, beside.points, to);
-        if self.closed.is_none() {
+        if self.sight == Sight::OneSide {
             add_size(s, to);
         }
         add_aspect(s, to);
@@ -138,7 +159,7 @@ impl Terms {
 
     /// `½ w ln²(h_i / reach)` for every half extent above the reach.
     fn add_reach(&self, s: &Parameters, points: usize, to: &mut Normal) {
-        if self.closed.is_some() {
+        if self.sight != Sight::OneSide {
             return;
         }
         for (i, half) in s.half_extents().iter().enumerate() {

@@ -1,0 +1,88 @@
+//! The last stage, on all points: by what the points can show of the surface.
+
+use super::bias::without_bias;
+use super::columns::{Sample, distances};
+use super::parameters::Parameters;
+use super::prepare::Normalised;
+use super::samples::sample;
+use super::search::schedule;
+use super::smeared::smeared_cost;
+use super::solver::{Hypothesis, Schedule, Workspace, refine};
+use super::terms::{Sight, Terms};
+use crate::Vector;
+use crate::numeric::random::Stream;
+
+/// Lines of sight that are looked at beside the fine set of points.
+const RAYS: usize = 48;
+/// Share of the surface that must have points near it for the points to show all of it.
+const COVERED: f64 = 0.85;
+/// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
+const BIASED: f64 = 0.01;
+const BLURRED: f64 = 0.02;
+/// Most hypotheses that are compared in the end, and by how many nats a point the last may be worse at first.
+const COMPARED: usize = 4;
+const WORSE: f64 = 0.3;
+/// Points by which bodies are compared.
+const COMPARING: usize = 400;
+
+/// The best of a pool of hypotheses (best first, not empty), refined on all points.
+pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspace) -> Hypothesis {
+    let to_the_end = |h: &Hypothesis, terms: &Terms, work: &mut Workspace| {
+        refine(h, &cloud.fine, terms, &schedule(15, RAYS, h.mixture.scale), work)
+    };
+    let best = to_the_end(&pool[0], &cloud.terms, work);
+    let Sight::AllAround { volume } = cloud.terms.sight else {
+        let near = Schedule { near: true, ..schedule(10, RAYS, best.mixture.scale) };
+        return refine(&best, &cloud.fine, &cloud.terms, &near, work);
+    };
+    let mut rivals = vec![best];
+    let close = WORSE * cloud.middle.len() as f64;
+    rivals.extend(pool[1..].iter().filter(|h| h.cost - pool[0].cost < close).take(COMPARED - 1));
+    if !best.parameters.family.is_deformed() && coverage(&best, &cloud.points) < COVERED {
+        let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
+        let refined = rivals.iter().map(|h| to_the_end(h, &terms, work));
+        return cheapest(refined.collect()).unwrap_or(best);
+    }
+    let noise = best.mixture.scale;
+    if noise < BIASED {
+        return best;
+    }
+    rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
+    let some: Vec<Vector> = every(&cloud.points, COMPARING);
+    let last = schedule(12, 0, 0.0);
+    let corrected = rivals.iter().enumerate().map(|(i, h)| {
+        let fitted = if i == 0 { *h } else { to_the_end(h, &cloud.terms, work) };
+        let parameters = without_bias(&fitted, &cloud.terms, &last, work);
+        let cost = smeared_cost(&parameters, &fitted.mixture, &some, noise, volume);
+        Hypothesis { parameters, cost, ..fitted }
+    });
+    cheapest(corrected.collect()).unwrap_or(best)
+}
+
+fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
+    rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// About `count` of the points, evenly over their order.
+fn every(points: &[Vector], count: usize) -> Vec<Vector> {
+    points.iter().step_by(points.len().div_ceil(count)).copied().collect()
+}
+
+/// Share of the surface that has points near it, in [0, 1].
+fn coverage(h: &Hypothesis, points: &[Vector]) -> f64 {
+    const PROBES: usize = 320;
+    let s: &Parameters = &h.parameters;
+    let near = 3.0 * h.mixture.scale + 1e-3;
+    let on: Vec<Vector> = distances(s, points.iter().copied())
+        .into_iter()
+        .zip(points)
+        .filter(|(d, _)| d.abs() < near)
+        .map(|(_, p)| *p)
+        .collect();
+    let mut probes = Vec::with_capacity(PROBES);
+    sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);
+    let spacing = (s.area() / on.len().max(1) as f64).sqrt();
+    let reach = (2.0 * h.mixture.scale).max(1.8 * spacing);
+    let seen = |probe: &&Vector| on.iter().any(|p| (p - *probe).norm_squared() < reach * reach);
+    probes.iter().filter(seen).count() as f64 / probes.len().max(1) as f64
+}

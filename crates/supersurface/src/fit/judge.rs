@@ -1,0 +1,43 @@
+//! From the best body back to the view: units, every point judged, how sure all is.
+
+use super::columns::distances;
+use super::prepare::Normalised;
+use super::solver::Hypothesis;
+use super::start::quantile;
+use super::{Fit, FitError, View};
+use crate::{Point, Vector};
+
+/// A fit with a lesser share of inliers explains nothing.
+const LEAST_SHARE: f64 = 0.1;
+
+/// The fit that a hypothesis is.
+pub(super) fn judge(
+    cloud: &Normalised,
+    view: &View<'_>,
+    h: &Hypothesis,
+    margin: f64,
+) -> Result<Fit, FitError> {
+    let s = &h.parameters;
+    let inward = |p: &Point| (p.coords - cloud.centre) / cloud.scale;
+    let is_finite = |x: &Vector| x.iter().all(|v| v.is_finite());
+    let finite = view.points.iter().map(inward).filter(is_finite);
+    let mut distances = distances(s, finite);
+    let mut next = distances.iter();
+    let mut judge = |p: &Point| {
+        is_finite(&inward(p)) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5)
+    };
+    let inliers: Vec<bool> = view.points.iter().map(&mut judge).collect();
+    let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
+    distances.iter_mut().for_each(|d| *d = d.abs());
+    if share.is_nan() || share < LEAST_SHARE {
+        return Err(FitError::NoAgreement { share });
+    }
+    Ok(Fit {
+        family: s.family,
+        surface: s.surface(&cloud.centre, cloud.scale)?,
+        noise: h.mixture.scale * cloud.scale,
+        residual: quantile(&mut distances, 0.5) * cloud.scale,
+        inliers,
+        margin,
+    })
+}

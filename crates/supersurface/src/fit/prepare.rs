@@ -1,0 +1,137 @@
+//! A view made ready: checked, with zero mean and unit root mean square, thinned, with frames to begin in.
+
+use super::columns::Sample;
+use super::patches::patches;
+use super::start::{Frame, frames, quantile};
+use super::terms::{Sight, Support, Terms};
+use super::{FitError, View};
+use crate::Vector;
+
+/// Fewer points than this determine no surface.
+const LEAST_POINTS: usize = 12;
+/// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide.
+const SKETCH: usize = 60;
+const COARSE: usize = 160;
+const MIDDLE: usize = 400;
+const FINE: usize = 2000;
+/// How far before a seen point nothing is, in normalised lengths.
+const BEFORE: f64 = 0.15;
+/// A piece stands on the support when the gap below it is less than this share of its size.
+const HOVERING: f64 = 0.8;
+/// The support is known no better than this share of the cloud's size.
+const SUPPORT_TOLERANCE: f64 = 0.01;
+
+/// The view with zero mean and unit root mean square.
+pub(super) struct Normalised {
+    pub(super) centre: Vector,
+    pub(super) scale: f64,
+    pub(super) sketch: Sample,
+    pub(super) coarse: Sample,
+    pub(super) middle: Sample,
+    pub(super) fine: Sample,
+    pub(super) points: Vec<Vector>,
+    pub(super) frames: Vec<Frame>,
+    pub(super) terms: Terms,
+}
+
+impl Normalised {
+    pub(super) fn new(view: &View<'_>) -> Result<Self, FitError> {
+        let points: Vec<Vector> = view
+            .points
+            .iter()
+            .map(|p| p.coords)
+            .filter(|p| p.iter().all(|v| v.is_finite()))
+            .collect();
+        let found = points.len();
+        if found < LEAST_POINTS {
+            return Err(FitError::TooFewPoints { found, needed: LEAST_POINTS });
+        }
+        // around the first point, so that far coordinates do not cancel, and by the largest, so that squares
+        // do not overflow
+        let origin = points[0];
+        let reach = points.iter().map(|p| (p - origin).amax()).fold(0.0, f64::max);
+        let magnitude = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        if reach.is_nan() || reach <= 1e-12 * magnitude || reach.is_infinite() {
+            return Err(FitError::OnePoint { points: found });
+        }
+        let n = found as f64;
+        let mean: Vector = points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n;
+        let centre = origin + mean * reach;
+        let square = points.iter().map(|p| ((p - centre) / reach).norm_squared()).sum::<f64>() / n;
+        let scale = square.sqrt() * reach;
+        if !(scale > 0.0 && scale.is_normal()) {
+            return Err(FitError::OnePoint { points: found });
+        }
+        let inward = |p: &Vector| (p - centre) / scale;
+        let sample = |count: usize| Sample::new(spread(&points, count).map(inward));
+        let fine: Vec<Vector> = spread(&points, FINE).map(inward).collect();
+        if is_line(&fine) {
+            return Err(FitError::Line { points: found });
+        }
+        let sides = box_sides(&fine);
+        let support = view.support.map(|plane| {
+            let normal = plane.normal().into_inner();
+            let offset = (normal.dot(&centre) + plane.offset()) / scale;
+            let mut heights: Vec<f64> = fine.iter().map(|p| normal.dot(p) + offset).collect();
+            // a piece that hovers higher than it is large is not the top of something that stands there
+            let standing = view.standing && quantile(&mut heights, 0.02) < HOVERING * sides.max();
+            let highest = quantile(&mut heights, 0.995);
+            let above = view.viewpoint.is_some_and(|p| plane.height(&p) / scale > highest);
+            let top = above.then_some(highest);
+            Support { normal, offset, standing, top, tolerance: SUPPORT_TOLERANCE }
+        });
+        let tallest = support.filter(|s| s.standing).and_then(|s| s.top).unwrap_or(0.0);
+        let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
+        let free = view.free.iter().map(|p| inward(&p.coords)).collect();
+        let volume = sides.iter().map(|s| s.max(0.1)).product();
+        let sight = if outside.is_some() { Sight::OneSide } else { Sight::AllAround { volume } };
+        let reach = 0.55 * sides.max().max(tallest);
+        let before = outside.map_or(Vec::new(), |viewpoint| {
+            let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
+            fine.iter().map(nearer).collect()
+        });
+        let patches = patches(&fine);
+        let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
+        Ok(Self {
+            centre,
+            scale,
+            sketch: sample(SKETCH),
+            coarse: sample(COARSE),
+            middle: sample(MIDDLE),
+            fine: Sample::new(fine.iter().copied()),
+            frames: frames(&fine, &patches, &terms),
+            points: fine,
+            terms,
+        })
+    }
+}
+
+/// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the
+/// same of each, as a step of the rows of a regular cloud would see only some of its columns.
+fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let n = points.len();
+    let taken = n.min(count);
+    let stretch = n as f64 / taken.max(1) as f64;
+    let at = move |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
+    (0..taken).map(move |i| &points[at(i).min(n - 1)])
+}
+
+/// Sides of the points' box along their principal axes.
+fn box_sides(points: &[Vector]) -> Vector {
+    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
+    let axes = nalgebra::SymmetricEigen::new(scatter).eigenvectors;
+    Vector::from_fn(|k, _| {
+        let along = || points.iter().map(|p| p.dot(&axes.column(k)));
+        let low = along().fold(f64::INFINITY, f64::min);
+        along().fold(f64::NEG_INFINITY, f64::max) - low
+    })
+}
+
+/// True when the points have no second direction.
+fn is_line(points: &[Vector]) -> bool {
+    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
+    let mut values = nalgebra::SymmetricEigen::new(scatter / points.len() as f64).eigenvalues;
+    values.as_mut_slice().sort_by(f64::total_cmp);
+    values[1] < 1e-10 * values[2]
+}
