@@ -15,7 +15,7 @@ use crate::numeric::random::Stream;
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
 /// Share of the surface that must have points near it for the points to show all of it.
-const COVERED: f64 = 0.85;
+pub(super) const COVERED: f64 = 0.85;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.01;
 const BLURRED: f64 = 0.02;
@@ -31,6 +31,13 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         refine(h, &cloud.fine, terms, &schedule(15, RAYS, h.mixture.scale), work)
     };
     let best = to_the_end(&pool[0], &cloud.terms, work);
+    if std::env::var("SS_DEBUG").is_ok() {
+        for h in pool {
+            dbg_h("pool", h);
+        }
+        dbg_h("best", &best);
+        eprintln!("coverage {:.3}", coverage(&best, &cloud.points));
+    }
     let Sight::AllAround { volume } = cloud.terms.sight else {
         let near = Schedule { near: true, ..schedule(10, RAYS, best.mixture.scale) };
         return refine(&best, &cloud.fine, &cloud.terms, &near, work);
@@ -59,6 +66,20 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
     cheapest(corrected.collect()).unwrap_or(best)
 }
 
+pub(super) fn dbg_h(what: &str, h: &Hypothesis) {
+    let p = &h.parameters;
+    eprintln!(
+        "{what}: cost {:.2} scale {:.4} out {:.3} axes {:.3?} ring {:.2} e {:.2?} at {:.2?} area {:.2}",
+        h.cost,
+        h.mixture.scale,
+        h.mixture.outliers,
+        p.log_axes.map(f64::exp),
+        p.ring,
+        p.exponents,
+        p.position.as_slice(),
+        p.area()
+    );
+}
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
     rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
@@ -69,7 +90,7 @@ fn every(points: &[Vector], count: usize) -> Vec<Vector> {
 }
 
 /// Share of the surface that has points near it, in [0, 1].
-fn coverage(h: &Hypothesis, points: &[Vector]) -> f64 {
+pub(super) fn coverage(h: &Hypothesis, points: &[Vector]) -> f64 {
     const PROBES: usize = 320;
     let s: &Parameters = &h.parameters;
     let near = 3.0 * h.mixture.scale + 1e-3;

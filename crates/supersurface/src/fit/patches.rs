@@ -9,7 +9,7 @@ use crate::Vector;
 /// Neighbours that make a neighbourhood.
 const NEIGHBOURS: usize = 12;
 /// Most points whose neighbourhoods are looked at, and most among which neighbours are sought.
-const LOOKED_AT: usize = 220;
+const LOOKED_AT: usize = 320;
 const AMONG: usize = 1600;
 
 /// The neighbourhood of a point.
@@ -24,8 +24,9 @@ pub(super) struct Patch {
     radius: f64,
 }
 
-/// Neighbourhoods spread over the cloud; none for too few points.
-pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
+/// Neighbourhoods spread over the cloud, of every n-th point from the given share of the first n on; none for too few
+/// points.
+pub(super) fn patches(points: &[Vector], from: f64) -> Vec<Patch> {
     if points.len() < 3 * NEIGHBOURS {
         return Vec::new();
     }
@@ -38,7 +39,8 @@ pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
     let mut reach = f32::INFINITY;
     let stride = points.len().div_ceil(LOOKED_AT);
     let mut found = Vec::with_capacity(LOOKED_AT);
-    for p in points.iter().step_by(stride) {
+    let first = (from * stride as f64) as usize;
+    for p in points.iter().skip(first).step_by(stride) {
         let [x, y, z] = [p.x as f32, p.y as f32, p.z as f32];
         for (i, square) in squares.iter_mut().enumerate() {
             let (dx, dy, dz) = (columns[0][i] - x, columns[1][i] - y, columns[2][i] - z);
@@ -74,19 +76,20 @@ pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
     found
 }
 
-/// The flattest half.
-pub(super) fn flattest(patches: &[Patch]) -> Vec<Patch> {
-    best(patches, patches.len().div_ceil(2), |p| p.flatness)
+/// The flattest share.
+pub(super) fn flattest(patches: &[Patch], share: f64) -> Vec<Patch> {
+    best(patches, share, |p| p.flatness)
 }
 
-/// The third that is most flat and dense.
-pub(super) fn firmest(patches: &[Patch]) -> Vec<Patch> {
+/// The share that is most flat and dense.
+pub(super) fn firmest(patches: &[Patch], share: f64) -> Vec<Patch> {
     let mut radii: Vec<f64> = patches.iter().map(|p| p.radius).collect();
     let typical = quantile(&mut radii, 0.5).max(1e-300);
-    best(patches, patches.len().div_ceil(3), |p| p.flatness - 0.5 * p.radius / typical)
+    best(patches, share, |p| p.flatness - 0.5 * p.radius / typical)
 }
 
-fn best(patches: &[Patch], count: usize, merit: impl Fn(&Patch) -> f64) -> Vec<Patch> {
+fn best(patches: &[Patch], share: f64, merit: impl Fn(&Patch) -> f64) -> Vec<Patch> {
+    let count = (share * patches.len() as f64).ceil() as usize;
     let mut sorted = patches.to_vec();
     sorted.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
     sorted.truncate(count);

@@ -1,7 +1,6 @@
 //! A view made ready: checked, with zero mean and unit root mean square, thinned, with frames to begin in.
 
 use super::columns::Sample;
-use super::patches::patches;
 use super::start::{Frame, frames, quantile};
 use super::terms::{Sight, Support, Terms};
 use super::{FitError, View};
@@ -90,7 +89,6 @@ impl Normalised {
             let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
             fine.iter().map(nearer).collect()
         });
-        let patches = patches(&fine);
         let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
         Ok(Self {
             centre,
@@ -99,7 +97,7 @@ impl Normalised {
             coarse: sample(COARSE),
             middle: sample(MIDDLE),
             fine: Sample::new(fine.iter().copied()),
-            frames: frames(&fine, &patches, &terms),
+            frames: frames(&fine, &terms),
             points: fine,
             terms,
         })

@@ -1,12 +1,12 @@
 //! The best body of one family: many starts, few refined, near-symmetries tried.
 
 use super::columns::Sample;
-use super::finish::finish;
+use super::finish::{COVERED, coverage, finish};
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
 use super::prepare::Normalised;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
-use super::start::starts;
+use super::start::{Frame, other_frames, starts};
 use super::switch::relatives;
 use super::terms::{Sight, Terms};
 
@@ -17,6 +17,8 @@ const SHORTLIST: usize = 8;
 const KEPT: usize = 3;
 /// How often the near-symmetries are tried.
 const SWITCHES: usize = 2;
+/// Share of points that a body may leave out without doubt.
+const LEFT_OUT: f64 = 0.2;
 /// Two hypotheses whose costs differ by less than this many nats are one.
 const SAME: f64 = 0.5;
 /// Noise is never estimated below this share of the cloud's size.
@@ -25,9 +27,35 @@ const NOISE_FLOOR: f64 = 1e-5;
 /// The best body of a family; a ball where there is no start.
 pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     let mut work = Workspace::default();
+    let mut pool = Vec::new();
+    search(cloud, family, &cloud.frames, &mut pool, &mut work);
+    if pool.first().is_some_and(|h| is_doubtful(cloud, h)) {
+        search(cloud, family, &other_frames(&cloud.points, &cloud.terms), &mut pool, &mut work);
+    }
+    if pool.is_empty() {
+        pool.push(begin(&Parameters::ball(family), &cloud.terms));
+    }
+    finish(cloud, &pool, &mut work)
+}
+
+/// True for a body that leaves out many points and shows little of itself.
+fn is_doubtful(cloud: &Normalised, h: &Hypothesis) -> bool {
+    h.mixture.outliers > LEFT_OUT
+        && cloud.terms.sight != Sight::OneSide
+        && coverage(h, &cloud.points) < COVERED
+}
+
+/// Adds what is found from some frames to a pool of hypotheses, best first.
+fn search(
+    cloud: &Normalised,
+    family: Family,
+    frames: &[Frame],
+    pool: &mut Vec<Hypothesis>,
+    work: &mut Workspace,
+) {
     let terms = &cloud.terms;
     let mut ranked: Vec<Hypothesis> =
-        starts(&cloud.frames, terms, family).iter().map(|s| begin(s, terms)).collect();
+        starts(frames, terms, family).iter().map(|s| begin(s, terms)).collect();
     // among outliers a sketch misleads: there all starts are ranked at once
     let rounds: &[(&Sample, usize, usize)] = match terms.sight {
         Sight::OneSide => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
@@ -35,32 +63,27 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     };
     for &(points, rounds, kept) in rounds {
         for h in &mut ranked {
-            *h = refine(h, points, terms, &coarse_schedule(h, rounds), &mut work);
+            *h = refine(h, points, terms, &coarse_schedule(h, rounds), work);
         }
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         ranked.truncate(kept);
     }
-    let mut pool = Vec::new();
     for h in &ranked {
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
-        add(&mut pool, refine(h, &cloud.middle, terms, &schedule, &mut work));
-    }
-    if pool.is_empty() {
-        pool.push(begin(&Parameters::ball(family), terms));
+        add(pool, refine(h, &cloud.middle, terms, &schedule, work));
     }
     for _ in 0..SWITCHES {
-        let best = pool[0];
+        let Some(best) = pool.first().copied() else { return };
         for relative in relatives(&best.parameters, terms.viewpoint) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(0.05);
             let schedule = schedule(8, MIDDLE_RAYS, scale);
-            add(&mut pool, refine(&start, &cloud.middle, terms, &schedule, &mut work));
+            add(pool, refine(&start, &cloud.middle, terms, &schedule, work));
         }
         if pool[0].cost > best.cost - SAME {
             break;
         }
     }
-    finish(cloud, &pool, &mut work)
 }
 
 /// Adds a hypothesis, best first, unless it is known.

@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
 use super::parameters::{Family, Parameters, RINGS};
-use super::patches::{Patch, firmest, flattest, scatter};
+use super::patches::{Patch, firmest, flattest, patches, scatter};
 use super::terms::{Sight, Terms};
 use crate::Vector;
 
@@ -22,6 +22,8 @@ const EXPONENT: f64 = 0.6;
 const BENDING: f64 = 0.35;
 /// Turns of the twists from which is searched.
 const TWIST: f64 = 0.12;
+/// Fewer neighbourhoods than this make no frame.
+const LEAST_PATCHES: usize = 8;
 /// Two frames whose axes agree within this cosine are one.
 const SAME_AXIS: f64 = 0.985;
 
@@ -45,33 +47,49 @@ pub(super) struct Frame {
 }
 
 /// Frames for normalised points, without near duplicates.
-pub(super) fn frames(points: &[Vector], patches: &[Patch], terms: &Terms) -> Vec<Frame> {
-    let mut out: Vec<Frame> = Vec::new();
-    let mut push = |axes: Matrix3<f64>, points: Vec<Vector>| {
-        // two frames with the same axes differ only where outliers stretch one of them
-        let known = terms.sight == Sight::OneSide
-            && out.iter().any(|other| {
-                (0..3).all(|i| {
-                    (0..3).any(|j| axes.column(i).dot(&other.axes.column(j)).abs() > SAME_AXIS)
-                })
-            });
-        if !known {
-            out.push(Frame { axes, points });
-        }
-    };
+pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+    let mut out = Vec::new();
     if let Some(support) = terms.support {
-        push(upright(points, &support.normal), points.to_vec());
+        push(&mut out, upright(points, &support.normal), points.to_vec(), terms);
     }
-    push(axes_of(&scatter(points.iter())), points.to_vec());
-    if !patches.is_empty() {
-        let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
-        let firm = of(&firmest(patches));
-        push(axes_of(&scatter(firm.iter())), firm);
-        let flat = flattest(patches);
-        let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
-        push(axes_of(&normals), of(&flat));
+    push(&mut out, axes_of(&scatter(points.iter())), points.to_vec(), terms);
+    by_patches(&mut out, &patches(points, 0.0), [1.0 / 3.0, 0.5], terms);
+    out
+}
+
+/// Frames by other neighbourhoods and by fewer of them, for where the first lead nowhere.
+pub(super) fn other_frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+    let mut out = Vec::new();
+    let patches = patches(points, 0.5);
+    for shares in [[0.4, 0.3], [0.2, 0.15]] {
+        by_patches(&mut out, &patches, shares, terms);
     }
     out
+}
+
+/// Frames by the given shares of the most flat and dense neighbourhoods and of the flattest.
+fn by_patches(out: &mut Vec<Frame>, patches: &[Patch], [firm, flat]: [f64; 2], terms: &Terms) {
+    let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
+    let firm = of(&firmest(patches, firm));
+    let flat = flattest(patches, flat);
+    if firm.len() < LEAST_PATCHES || flat.len() < LEAST_PATCHES {
+        return;
+    }
+    push(out, axes_of(&scatter(firm.iter())), firm, terms);
+    let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
+    push(out, axes_of(&normals), of(&flat), terms);
+}
+
+/// Adds a frame. Two with the same axes differ only where outliers stretch one of them, which on a single view is left
+/// out.
+fn push(out: &mut Vec<Frame>, axes: Matrix3<f64>, points: Vec<Vector>, terms: &Terms) {
+    let same = |other: &Frame| {
+        let alike = |i, j| axes.column(i).dot(&other.axes.column(j)).abs() > SAME_AXIS;
+        (0..3).all(|i| (0..3).any(|j| alike(i, j)))
+    };
+    if terms.sight != Sight::OneSide || !out.iter().any(same) {
+        out.push(Frame { axes, points });
+    }
 }
 
 /// Eigenvectors in rising order of the eigenvalues, right-handed.
