@@ -15,7 +15,7 @@ use crate::numeric::random::Stream;
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
 /// Share of the surface that must have points near it for the points to show all of it.
-pub(super) const COVERED: f64 = 0.85;
+pub(super) const COVERED: f64 = 0.9;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.01;
 const BLURRED: f64 = 0.02;
@@ -36,7 +36,7 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
             dbg_h("pool", h);
         }
         dbg_h("best", &best);
-        eprintln!("coverage {:.3}", coverage(&best, &cloud.points));
+        eprintln!("coverage {:.3}", coverage(&best, &cloud.middle));
     }
     let Sight::AllAround { volume } = cloud.terms.sight else {
         let near = Schedule { near: true, ..schedule(10, RAYS, best.mixture.scale) };
@@ -45,7 +45,7 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
     let mut rivals = vec![best];
     let close = WORSE * cloud.middle.len() as f64;
     rivals.extend(pool[1..].iter().filter(|h| h.cost - pool[0].cost < close).take(COMPARED - 1));
-    if !best.parameters.family.is_deformed() && coverage(&best, &cloud.points) < COVERED {
+    if !best.parameters.family.is_deformed() && coverage(&best, &cloud.middle) < COVERED {
         let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
         let refined = rivals.iter().map(|h| to_the_end(h, &terms, work));
         return cheapest(refined.collect()).unwrap_or(best);
@@ -90,15 +90,15 @@ fn every(points: &[Vector], count: usize) -> Vec<Vector> {
 }
 
 /// Share of the surface that has points near it, in [0, 1].
-pub(super) fn coverage(h: &Hypothesis, points: &[Vector]) -> f64 {
+pub(super) fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
     const PROBES: usize = 320;
     let s: &Parameters = &h.parameters;
     let near = 3.0 * h.mixture.scale + 1e-3;
-    let on: Vec<Vector> = distances(s, points.iter().copied())
+    let on: Vec<Vector> = distances(s, points.points())
         .into_iter()
-        .zip(points)
+        .zip(points.points())
         .filter(|(d, _)| d.abs() < near)
-        .map(|(_, p)| *p)
+        .map(|(_, p)| p)
         .collect();
     let mut probes = Vec::with_capacity(PROBES);
     sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);

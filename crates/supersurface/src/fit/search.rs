@@ -42,7 +42,7 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
 fn is_doubtful(cloud: &Normalised, h: &Hypothesis) -> bool {
     h.mixture.outliers > LEFT_OUT
         && cloud.terms.sight != Sight::OneSide
-        && coverage(h, &cloud.points) < COVERED
+        && coverage(h, &cloud.middle) < COVERED
 }
 
 /// Adds what is found from some frames to a pool of hypotheses, best first.

@@ -87,6 +87,9 @@ const ASPECT_DEVIATION: f64 = 1.2;
 /// it is small.
 const SIZE_WEIGHT: f64 = 3.0;
 
+/// The same where not all is seen and no ray is known: noise makes extrapolated bodies too large.
+const PART_SIZE_WEIGHT: f64 = 15.0;
+
 /// What the terms stand beside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beside<'a> {
@@ -151,8 +154,10 @@ impl Terms {
         self.add_support(s, beside.points, beside.scale, to);
         add_intrusions(s, beside, to);
         self.add_reach(s, beside.points, to);
-        if self.sight == Sight::OneSide {
-            add_size(s, to);
+        match self.sight {
+            Sight::OneSide => add_size(s, SIZE_WEIGHT, to),
+            Sight::Partly => add_size(s, PART_SIZE_WEIGHT, to),
+            Sight::AllAround { .. } => {}
         }
         add_aspect(s, to);
     }
@@ -282,12 +287,12 @@ fn extreme_of_deformed(s: &Parameters, normal: &Vector, offset: f64) -> Option<(
 }
 
 /// `λ Σ ln h_i` over the three half extents.
-fn add_size(s: &Parameters, to: &mut Normal) {
+fn add_size(s: &Parameters, weight: f64, to: &mut Normal) {
     for (i, half) in s.half_extents().iter().enumerate() {
-        to.cost += SIZE_WEIGHT * half.ln();
-        to.gradient[i] += SIZE_WEIGHT;
+        to.cost += weight * half.ln();
+        to.gradient[i] += weight;
         if s.family.is_ring() && i < 2 {
-            to.gradient[RING] += SIZE_WEIGHT / (1.0 + s.ring);
+            to.gradient[RING] += weight / (1.0 + s.ring);
         }
     }
 }
