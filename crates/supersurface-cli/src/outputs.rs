@@ -94,7 +94,7 @@ impl Run<'_> {
         }
         let options = Options {
             objects: source.objects,
-            fit: self.how.model.family().map_or(FitOptions::UNDEFORMED, FitOptions::only),
+            fit: self.how.model.family().map_or(FitOptions::UNDEFORMED, FitOptions::only).quick(),
             ..Options::default()
         };
         let told = &mut |stage| progress.stage(stage);

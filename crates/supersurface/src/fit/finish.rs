@@ -1,5 +1,6 @@
 //! The last stage, on all points: by what the points can show of the surface.
 
+use super::Effort;
 use super::bias::without_bias;
 use super::columns::{Sample, distances};
 use super::parameters::Parameters;
@@ -39,6 +40,9 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         eprintln!("coverage {:.3}", coverage(&best, &cloud.middle));
     }
     let Sight::AllAround { volume } = cloud.terms.sight else {
+        if cloud.effort == Effort::Quick {
+            return best;
+        }
         let near = Schedule { near: true, ..schedule(10, RAYS, best.mixture.scale) };
         return refine(&best, &cloud.fine, &cloud.terms, &near, work);
     };

@@ -84,21 +84,39 @@ impl<'a> View<'a> {
 pub struct FitOptions {
     /// The families among which the evidence chooses; all by default.
     pub families: &'static [Family],
+    /// How much time a fit may take.
+    pub effort: Effort,
+}
+
+/// How much time a fit may take: all else is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// A few milliseconds: for the frames of a camera with many objects.
+    Quick,
+    /// Ten milliseconds or so: more starts and points, and a last stage with distances near to the Euclidean.
+    #[default]
+    Thorough,
 }
 
 impl FitOptions {
     /// Superellipsoids and supertoroids: what grasp tables know.
-    pub const UNDEFORMED: Self = Self { families: &[Family::Superellipsoid, Family::Supertoroid] };
+    pub const UNDEFORMED: Self =
+        Self { families: &[Family::Superellipsoid, Family::Supertoroid], effort: Effort::Thorough };
+
+    /// The same in less time.
+    pub const fn quick(self) -> Self {
+        Self { effort: Effort::Quick, ..self }
+    }
 
     /// One family.
     pub const fn only(family: Family) -> Self {
-        Self { families: family.alone() }
+        Self { families: family.alone(), effort: Effort::Thorough }
     }
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { families: &Family::ALL }
+        Self { families: &Family::ALL, effort: Effort::Thorough }
     }
 }
 
@@ -168,7 +186,7 @@ pub enum FitError {
 
 /// Fits one supersurface.
 pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
-    let cloud = Normalised::new(view)?;
+    let cloud = Normalised::new(view, options.effort)?;
     let (hypothesis, margin) = match options.families {
         [family] => (best(&cloud, *family), 0.0),
         _ => choose(&cloud),

@@ -3,16 +3,17 @@
 use super::columns::Sample;
 use super::start::{Frame, frames, quantile};
 use super::terms::{Sight, Support, Terms};
-use super::{FitError, View};
+use super::{Effort, FitError, View};
 use crate::Vector;
 
 /// Fewer points than this determine no surface.
 const LEAST_POINTS: usize = 12;
-/// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide.
+/// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide
+/// (for both efforts).
 const SKETCH: usize = 60;
 const COARSE: usize = 160;
-const MIDDLE: usize = 400;
-const FINE: usize = 2000;
+const MIDDLE: [usize; 2] = [240, 400];
+const FINE: [usize; 2] = [600, 2000];
 /// How far before a seen point nothing is, in normalised lengths.
 const BEFORE: f64 = 0.15;
 /// A piece stands on the support when the gap below it is less than this share of its size.
@@ -31,10 +32,11 @@ pub(super) struct Normalised {
     pub(super) points: Vec<Vector>,
     pub(super) frames: Vec<Frame>,
     pub(super) terms: Terms,
+    pub(super) effort: Effort,
 }
 
 impl Normalised {
-    pub(super) fn new(view: &View<'_>) -> Result<Self, FitError> {
+    pub(super) fn new(view: &View<'_>, effort: Effort) -> Result<Self, FitError> {
         let points: Vec<Vector> = view
             .points
             .iter()
@@ -63,7 +65,7 @@ impl Normalised {
         }
         let inward = |p: &Vector| (p - centre) / scale;
         let sample = |count: usize| Sample::new(spread(&points, count).map(inward));
-        let fine: Vec<Vector> = spread(&points, FINE).map(inward).collect();
+        let fine: Vec<Vector> = spread(&points, FINE[effort as usize]).map(inward).collect();
         if is_line(&fine) {
             return Err(FitError::Line { points: found });
         }
@@ -95,11 +97,12 @@ impl Normalised {
             scale,
             sketch: sample(SKETCH),
             coarse: sample(COARSE),
-            middle: sample(MIDDLE),
+            middle: sample(MIDDLE[effort as usize]),
             fine: Sample::new(fine.iter().copied()),
             frames: frames(&fine, &terms),
             points: fine,
             terms,
+            effort,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! The best body of one family: many starts, few refined, near-symmetries tried.
 
+use super::Effort;
 use super::columns::Sample;
 use super::finish::{COVERED, coverage, finish};
 use super::noise::{Law, Mixture};
@@ -15,8 +16,8 @@ const MIDDLE_RAYS: usize = 24;
 /// How many starts of a single view are ranked, and how many of all are refined.
 const SHORTLIST: usize = 8;
 const KEPT: usize = 3;
-/// How often the near-symmetries are tried.
-const SWITCHES: usize = 2;
+/// How often the near-symmetries are tried (for both efforts).
+const SWITCHES: [usize; 2] = [1, 2];
 /// Share of points that a body may leave out without doubt.
 const LEFT_OUT: f64 = 0.2;
 /// Two hypotheses whose costs differ by less than this many nats are one.
@@ -57,9 +58,10 @@ fn search(
     let mut ranked: Vec<Hypothesis> =
         starts(frames, terms, family).iter().map(|s| begin(s, terms)).collect();
     // among outliers a sketch misleads: there all starts are ranked at once
-    let rounds: &[(&Sample, usize, usize)] = match terms.sight {
-        Sight::OneSide => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
-        Sight::AllAround { .. } | Sight::Partly => &[(&cloud.coarse, 10, KEPT)],
+    let sketch = terms.sight == Sight::OneSide && cloud.effort == Effort::Quick;
+    let rounds: &[(&Sample, usize, usize)] = match sketch {
+        true => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
+        false => &[(&cloud.coarse, 10, KEPT)],
     };
     for &(points, rounds, kept) in rounds {
         for h in &mut ranked {
@@ -72,7 +74,7 @@ fn search(
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
         add(pool, refine(h, &cloud.middle, terms, &schedule, work));
     }
-    for _ in 0..SWITCHES {
+    for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
         for relative in relatives(&best.parameters, terms.viewpoint) {
             let start = Hypothesis { parameters: relative, ..best };

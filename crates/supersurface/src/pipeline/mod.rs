@@ -40,7 +40,7 @@ impl Default for Options {
         Self {
             objects: Objects::default(),
             segment: SegmentOptions::default(),
-            fit: FitOptions::UNDEFORMED,
+            fit: FitOptions::UNDEFORMED.quick(),
             grasp: GraspOptions::default(),
         }
     }
