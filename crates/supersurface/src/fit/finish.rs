@@ -39,6 +39,32 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         dbg_h("best", &best);
         eprintln!("coverage {:.3}", coverage(&best, &cloud.middle));
     }
+    if let Ok(t) = std::env::var("TRUTH") {
+        let v: Vec<f64> = t.split(',').map(|x| x.parse().unwrap()).collect();
+        let mut p = pool[0].parameters;
+        for k in 0..3 {
+            p.log_axes[k] = (v[k] / cloud.scale).ln();
+            p.position[k] = (v[6 + k] - cloud.centre[k]) / cloud.scale;
+        }
+        p.ring = v[3];
+        p.exponents = [v[4].clamp(0.05, 1.97), v[5].clamp(0.05, 1.97)];
+        p.rotation = nalgebra::Rotation3::from_matrix_unchecked(nalgebra::Matrix3::from_row_slice(
+            &v[9..18],
+        ));
+        let h = Hypothesis { parameters: p, ..pool[0] };
+        let h = Hypothesis {
+            mixture: super::noise::Mixture { scale: 0.05, outliers: 0.1, ..h.mixture },
+            ..h
+        };
+        let m = refine(&h, &cloud.middle, &cloud.terms, &schedule(12, 24, 0.0), work);
+        dbg_h("truth middle", &m);
+        let m = refine(&h, &cloud.fine, &cloud.terms, &schedule(15, RAYS, 0.0), work);
+        dbg_h("truth", &m);
+        if std::env::var("USETRUTH").is_ok() {
+            let near = Schedule { near: true, ..schedule(10, RAYS, m.mixture.scale) };
+            return refine(&m, &cloud.fine, &cloud.terms, &near, work);
+        }
+    }
     let Sight::AllAround { volume } = cloud.terms.sight else {
         if cloud.effort == Effort::Quick {
             return best;

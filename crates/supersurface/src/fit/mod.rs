@@ -35,6 +35,7 @@ mod near;
 mod noise;
 mod parameters;
 mod patches;
+mod pieces;
 mod prepare;
 mod pull_back;
 mod rays;

@@ -1,6 +1,7 @@
 //! A view made ready: checked, with zero mean and unit root mean square, thinned, with frames to begin in.
 
 use super::columns::Sample;
+use super::pieces::largest_piece;
 use super::start::{Frame, frames, quantile};
 use super::terms::{Sight, Support, Terms};
 use super::{Effort, FitError, View};
@@ -14,6 +15,8 @@ const SKETCH: usize = 60;
 const COARSE: usize = 160;
 const MIDDLE: [usize; 2] = [240, 400];
 const FINE: [usize; 2] = [600, 2000];
+/// Share of the points from which a piece is as good as all.
+const WHOLE: f64 = 0.97;
 /// How far before a seen point nothing is, in normalised lengths.
 const BEFORE: f64 = 0.15;
 /// A piece stands on the support when the gap below it is less than this share of its size.
@@ -92,14 +95,25 @@ impl Normalised {
             fine.iter().map(nearer).collect()
         });
         let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
+        // on a single view stray points and what lies beside the object lead starts astray
+        let piece = match (sight, effort) {
+            (Sight::OneSide, Effort::Thorough) => largest_piece(&fine),
+            _ => Vec::new(),
+        };
+        let parted =
+            piece.len() < (WHOLE * fine.len() as f64) as usize && piece.len() > LEAST_POINTS;
+        let start: &[Vector] = if parted { &piece } else { &fine };
+        if std::env::var("SS_DEBUG").is_ok() {
+            eprintln!("piece {} of {}", piece.len(), fine.len());
+        }
         Ok(Self {
             centre,
             scale,
             sketch: sample(SKETCH),
-            coarse: sample(COARSE),
+            coarse: Sample::new(spread(start, COARSE).copied()),
             middle: sample(MIDDLE[effort as usize]),
             fine: Sample::new(fine.iter().copied()),
-            frames: frames(&fine, &terms),
+            frames: frames(start, &terms),
             points: fine,
             terms,
             effort,
