@@ -94,6 +94,15 @@ pub fn outline_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     (0..kept).map(|i| picture.point(ring[i * ring.len() / kept], 3.0 * farthest)).collect()
 }
 
+/// The same for points of one object alone.
+pub(super) fn outline(points: &[Vector], viewpoint: &Vector) -> Vec<Vector> {
+    let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
+    let all: Vec<u32> = (0..points.len() as u32).collect();
+    let viewpoint = Some(Point::from(*viewpoint));
+    let cloud = PointCloud { points, viewpoint, ..PointCloud::default() };
+    outline_points(&cloud, &all).into_iter().map(|p| p.coords).collect()
+}
+
 /// The object as the sensor sees it: a pinhole picture towards its middle.
 struct Picture {
     viewpoint: Point,

@@ -14,11 +14,23 @@ const NEIGHBOURS: usize = 5;
 const MEASURED: usize = 64;
 const REACH: f64 = 1.5;
 
-/// The largest piece of a cloud; all points where none hangs together.
-pub(super) fn largest_piece(points: &[Vector]) -> Vec<Vector> {
+/// What hangs together in a cloud.
+pub(super) struct Pieces {
+    /// The largest piece; all points where none hangs together.
+    pub(super) largest: Vec<Vector>,
+    /// All pieces that are no crumbs.
+    pub(super) coherent: Vec<Vector>,
+}
+
+/// Share of the points below which a piece is a crumb.
+const CRUMB: f64 = 0.02;
+
+/// The pieces of a cloud.
+pub(super) fn pieces(points: &[Vector]) -> Pieces {
+    let whole = || Pieces { largest: points.to_vec(), coherent: points.to_vec() };
     let radius = REACH * spacing(points);
     if !(radius > 0.0 && radius.is_finite()) {
-        return points.to_vec();
+        return whole();
     }
     let cell = |p: &Vector| [0, 1, 2].map(|k| (p[k] / radius).floor() as i64);
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
@@ -61,9 +73,16 @@ pub(super) fn largest_piece(points: &[Vector]) -> Vec<Vector> {
         sizes.push(size);
     }
     let Some(largest) = (0..sizes.len()).max_by_key(|k| sizes[*k]).filter(|k| sizes[*k] > 0) else {
-        return points.to_vec();
+        return whole();
     };
-    points.iter().zip(&piece).filter(|(_, p)| **p == largest).map(|(p, _)| *p).collect()
+    let of = |wanted: &dyn Fn(usize) -> bool| {
+        points.iter().zip(&piece).filter(|(_, p)| wanted(**p)).map(|(p, _)| *p).collect()
+    };
+    let crumb = (CRUMB * points.len() as f64) as usize;
+    Pieces {
+        largest: of(&|p| p == largest),
+        coherent: of(&|p| sizes.get(p).is_some_and(|s| *s > crumb)),
+    }
 }
 
 /// Median distance of the sixth neighbour.

@@ -1,7 +1,8 @@
 //! A view made ready: checked, with zero mean and unit root mean square, thinned, with frames to begin in.
 
 use super::columns::Sample;
-use super::pieces::largest_piece;
+use super::free_space::outline;
+use super::pieces::pieces;
 use super::start::{Frame, frames, quantile};
 use super::terms::{Sight, Support, Terms};
 use super::{Effort, FitError, View};
@@ -86,26 +87,29 @@ impl Normalised {
         });
         let tallest = support.filter(|s| s.standing).and_then(|s| s.top).unwrap_or(0.0);
         let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
-        let free = view.free.iter().map(|p| inward(&p.coords)).collect();
         let volume = sides.iter().map(|s| s.max(0.1)).product();
         let sight = if outside.is_some() { Sight::OneSide } else { Sight::AllAround { volume } };
+        // on a single view stray points and what lies beside the object lead starts astray
+        let parts = match (sight, effort) {
+            (Sight::OneSide, Effort::Thorough) => Some(pieces(&fine)),
+            _ => None,
+        };
+        let piece = parts.as_ref().map_or(&[][..], |p| &p.largest);
+        let parted =
+            piece.len() < (WHOLE * fine.len() as f64) as usize && piece.len() > LEAST_POINTS;
+        let start: &[Vector] = if parted { piece } else { &fine };
+        let free = match (&parts, outside) {
+            (Some(parts), Some(viewpoint)) if view.free.is_empty() => {
+                outline(&parts.coherent, &viewpoint)
+            }
+            _ => view.free.iter().map(|p| inward(&p.coords)).collect(),
+        };
         let reach = 0.55 * sides.max().max(tallest);
         let before = outside.map_or(Vec::new(), |viewpoint| {
             let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
             fine.iter().map(nearer).collect()
         });
         let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
-        // on a single view stray points and what lies beside the object lead starts astray
-        let piece = match (sight, effort) {
-            (Sight::OneSide, Effort::Thorough) => largest_piece(&fine),
-            _ => Vec::new(),
-        };
-        let parted =
-            piece.len() < (WHOLE * fine.len() as f64) as usize && piece.len() > LEAST_POINTS;
-        let start: &[Vector] = if parted { &piece } else { &fine };
-        if std::env::var("SS_DEBUG").is_ok() {
-            eprintln!("piece {} of {}", piece.len(), fine.len());
-        }
         Ok(Self {
             centre,
             scale,
