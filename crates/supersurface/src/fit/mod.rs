@@ -27,6 +27,7 @@
 mod columns;
 mod evidence;
 mod free_space;
+pub mod generic;
 mod kernel;
 mod noise;
 mod parameters;

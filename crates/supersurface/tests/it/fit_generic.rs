@@ -1,0 +1,274 @@
+//! Made clouds of members that the special fitter does not cover, recovered by the generic one.
+//!
+//! The whole table (some minutes; figures of single clouds with `--nocapture`):
+//! `cargo test --release -p supersurface --test it -- --ignored --nocapture generic_table`
+
+use supersurface::fit::generic::{
+    GenericFit, GenericModel, GenericOptions, GenericShape, fit_generic,
+};
+use supersurface::mesh::{MarchOptions, Mesh, Resolution, march};
+use supersurface::nalgebra::{Translation3, UnitQuaternion};
+use supersurface::numeric::random::Stream;
+use supersurface::shape::{
+    ExtendedSuperellipsoid, Hyperquadric, Implicit, Posed, Superformula, Supershape, Supertoroid,
+};
+use supersurface::surface::Solid;
+use supersurface::{Point, Pose, Vector};
+
+const POINTS: usize = 1500;
+/// Standard deviation of the noise along each axis, in sizes.
+const NOISE: f64 = 0.005;
+/// A shape within this mean distance, in sizes, is recovered.
+const RECOVERED: f64 = 0.02;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Class {
+    Hyperquadric,
+    Supershape,
+    Extended,
+    Tapered,
+    Twisted,
+    Bent,
+}
+
+impl Class {
+    /// A random member with the model that it belongs to; `None` for a body that is too thin or not one at all.
+    fn draw(self, random: &mut Stream) -> Option<(GenericShape, GenericModel)> {
+        let (shape, model) = match self {
+            Self::Hyperquadric => {
+                let terms = 4 + random.index(3);
+                (GenericShape::Hyperquadric(hyperquadric(terms, random)?), GenericModel::Hyperquadric { terms })
+            }
+            Self::Supershape => (solid(supershape(random)?), GenericModel::Supershape),
+            Self::Extended => {
+                let (profile, section) = (3 + random.index(2), 4);
+                let axes = std::array::from_fn(|_| random.between(0.4, 1.0));
+                let mut values = |count: usize| -> Vec<f64> {
+                    (0..count).map(|_| random.between(0.25, 1.6)).collect()
+                };
+                let shape = ExtendedSuperellipsoid::new(axes, &values(profile), &values(section));
+                let shape = Solid::RadialExtended(Box::new(shape.ok()?.radial()));
+                (solid(shape), GenericModel::Extended { profile, section })
+            }
+            Self::Tapered | Self::Twisted | Self::Bent => {
+                let axes = std::array::from_fn(|_| random.between(0.2, 0.6));
+                let exponents = [random.between(0.3, 1.5), random.between(0.3, 1.5)];
+                let ring = random.between(1.6, 3.5);
+                let toroid = Solid::from(Supertoroid::new(axes, ring, exponents).ok()?);
+                let either = |random: &mut Stream| if random.uniform() < 0.5 { -1.0 } else { 1.0 };
+                let shape = match self {
+                    Self::Tapered => {
+                        let k = |r: &mut Stream| either(r) * r.between(0.15, 0.6);
+                        toroid.tapered([k(random), k(random)])
+                    }
+                    Self::Twisted => {
+                        let turns = either(random) * random.between(0.03, 0.12);
+                        toroid.twisted(turns)
+                    }
+                    _ => {
+                        let reach = axes[0].max(axes[1]) * (1.0 + ring);
+                        toroid.bent(random.between(0.2, 0.6) / reach, random.between(-3.1, 3.1))
+                    }
+                };
+                let is = |class| class == self;
+                let model = GenericModel::Toroid {
+                    taper: is(Self::Tapered),
+                    twist: is(Self::Twisted),
+                    bend: is(Self::Bent),
+                };
+                (solid(shape.ok()?), model)
+            }
+        };
+        let sides = sides(&shape);
+        (sides.max() < 6.0 * sides.min()).then_some((shape, model))
+    }
+}
+
+fn solid(shape: Solid) -> GenericShape {
+    GenericShape::Solid(shape)
+}
+
+fn sides(shape: &impl Implicit) -> Vector {
+    let [low, high] = shape.bounds();
+    high - low
+}
+
+/// Planes in random directions, no two nearly the same.
+fn hyperquadric(terms: usize, random: &mut Stream) -> Option<Hyperquadric> {
+    let mut planes: Vec<[f64; 4]> = Vec::new();
+    let mut exponents = Vec::new();
+    for _ in 0..terms {
+        let n = Vector::from_fn(|_, _| random.normal()).normalize();
+        let alike = |p: &[f64; 4]| Vector::new(p[0], p[1], p[2]).normalize().dot(&n).abs() > 0.8;
+        if planes.iter().any(alike) {
+            return None;
+        }
+        let n = n / random.between(0.6, 1.2);
+        planes.push([n.x, n.y, n.z, random.between(-0.3, 0.3)]);
+        exponents.push(random.between(0.7, 2.5).exp());
+    }
+    Hyperquadric::new(&planes, &exponents).ok().filter(Hyperquadric::is_bounded)
+}
+
+fn supershape(random: &mut Stream) -> Option<Solid> {
+    let mut curve = |m: usize, size: f64, odd: bool| {
+        let first = random.between(0.0, 2.0).exp();
+        let second = first * random.between(-0.7, 0.7).exp();
+        let third = if odd { second } else { first * random.between(-0.7, 0.7).exp() };
+        let a = random.between(0.8, 1.25);
+        let b = if odd { a } else { random.between(0.8, 1.25) };
+        // scales that multiply the radius by `size`
+        let grown = |scale: f64, n: f64| scale * (size.ln() * first / n).exp();
+        let curve = Superformula::new(
+            m as f64,
+            [first, second, third],
+            [grown(a, second), grown(b, third)],
+        );
+        let radii = |c: &Superformula| (0..400).map(|i| c.radius(f64::from(i) * 0.0157)).collect();
+        curve.ok().filter(|c| {
+            let radii: Vec<f64> = radii(c);
+            let (low, high) = radii.iter().fold((f64::MAX, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
+            high < 2.5 * low
+        })
+    };
+    let around = 2 + (curve(4, 1.0, false).map_or(0, |c| (c.radius(0.1) * 1e6) as usize)) % 7;
+    let longitude = curve(around, 1.0, around % 2 == 1)?;
+    let along = [2, 4, 4, 6][(longitude.radius(0.3) * 1e6) as usize % 4];
+    let latitude = curve(along, 0.5, false)?;
+    Some(Solid::Supershape(Box::new(Supershape::new(longitude, latitude).ok()?)))
+}
+
+struct Case {
+    model: GenericModel,
+    truth: Posed<GenericShape>,
+    mesh: Mesh,
+    size: f64,
+    points: Vec<Point>,
+}
+
+/// Cloud number `index` of a class: a body of 5 cm to 5 m anywhere, with noise on its surface points.
+fn case(class: Class, index: u64) -> Case {
+    let mut random = Stream::new(100 + class as u64, index);
+    let (shape, model) =
+        (0..1000).find_map(|_| class.draw(&mut random)).expect("a body can be drawn");
+    // the size in metres comes with the points, as not every member can be scaled
+    let own = sides(&shape).max();
+    let turn = Vector::from_fn(|_, _| random.normal());
+    let place = Vector::from_fn(|_, _| random.between(-2.0, 2.0) * own);
+    let pose = Pose::from_parts(Translation3::from(place), UnitQuaternion::new(turn));
+    let truth = Posed::new(shape, pose).unwrap();
+    let mesh = meshed(&truth);
+    let sampler = mesh.sampler();
+    let points = (0..POINTS)
+        .map(|_| {
+            let numbers = std::array::from_fn(|_| random.uniform());
+            let (p, _) = sampler.sample_at(numbers).unwrap();
+            p + Vector::from_fn(|_, _| random.normal()) * (NOISE * own)
+        })
+        .collect();
+    Case { model, truth, mesh, size: own, points }
+}
+
+fn meshed(shape: &Posed<GenericShape>) -> Mesh {
+    let options = MarchOptions { resolution: Resolution::Count(56), ..Default::default() };
+    march(shape.shape(), &options).map(|m| m.moved(shape.pose())).unwrap()
+}
+
+/// Mean of the distances from points of each surface to the other, in sizes.
+fn surface_distance(case: &Case, found: &GenericFit) -> f64 {
+    let other = meshed(&found.surface);
+    let one_way = |from: &Mesh, to: &Mesh| {
+        let (sampler, mut random) = (from.sampler(), Stream::new(9, 0));
+        let triangles: Vec<[Point; 3]> = to.corners().collect();
+        let count = 500;
+        let sum: f64 = (0..count)
+            .filter_map(|_| sampler.sample_at(std::array::from_fn(|_| random.uniform())))
+            .map(|(p, _)| {
+                let nearest = triangles.iter().map(|t| square_distance(&p, t));
+                nearest.fold(f64::MAX, f64::min).sqrt()
+            })
+            .sum();
+        sum / f64::from(count)
+    };
+    0.5 * (one_way(&case.mesh, &other) + one_way(&other, &case.mesh)) / case.size
+}
+
+/// From a point to a triangle.
+fn square_distance(p: &Point, [a, b, c]: &[Point; 3]) -> f64 {
+    let edge = |a: &Point, b: &Point| {
+        let (along, to) = (b - a, p - a);
+        let t = (to.dot(&along) / along.norm_squared().max(1e-300)).clamp(0.0, 1.0);
+        (to - along * t).norm_squared()
+    };
+    let n = (b - a).cross(&(c - a));
+    let beside = |a: &Point, b: &Point| (b - a).cross(&(p - a)).dot(&n) >= 0.0;
+    if beside(a, b) && beside(b, c) && beside(c, a) && n.norm_squared() > 0.0 {
+        let height = (p - a).dot(&n);
+        return height * height / n.norm_squared();
+    }
+    edge(a, b).min(edge(b, c)).min(edge(c, a))
+}
+
+fn recovered(class: Class, index: u64) -> f64 {
+    let case = case(class, index);
+    let found = fit_generic(&case.points, case.model, &GenericOptions::default()).unwrap();
+    surface_distance(&case, &found)
+}
+
+#[test]
+#[ignore = "a measurement of some minutes"]
+#[allow(clippy::print_stdout)]
+fn generic_table() {
+    use std::time::Instant;
+    let only = std::env::var("CLASS").unwrap_or_default();
+    let count: u64 = std::env::var("COUNT").ok().and_then(|c| c.parse().ok()).unwrap_or(20);
+    for class in [
+        Class::Hyperquadric,
+        Class::Supershape,
+        Class::Extended,
+        Class::Tapered,
+        Class::Twisted,
+        Class::Bent,
+    ] {
+        let name = format!("{class:?}");
+        if !name.to_lowercase().contains(&only.to_lowercase()) {
+            continue;
+        }
+        let mut errors = Vec::new();
+        let mut seconds = Vec::new();
+        for index in 0..count {
+            let case = case(class, index);
+            let start = Instant::now();
+            let found = fit_generic(&case.points, case.model, &GenericOptions::default());
+            seconds.push(start.elapsed().as_secs_f64());
+            let error = found.as_ref().map_or(f64::INFINITY, |f| surface_distance(&case, f));
+            match &found {
+                Ok(f) => println!(
+                    "  {name} {index:2}: error {:.3} %, residual {:.3} %, noise {:.3} %, inliers {:.3}, {} rounds, {:?}, {:?}",
+                    100.0 * error,
+                    100.0 * f.residual / case.size,
+                    100.0 * f.noise / case.size,
+                    f.inliers.iter().filter(|i| **i).count() as f64 / POINTS as f64,
+                    f.iterations,
+                    f.stopped,
+                    case.model,
+                ),
+                Err(e) => println!("  {name} {index:2}: {e}"),
+            }
+            if error > 0.01 {
+                println!("    truth {:?}", case.truth.shape());
+                println!("    found {:?}", found.as_ref().map(|f| f.surface.shape()));
+            }
+            errors.push(error);
+        }
+        errors.sort_by(f64::total_cmp);
+        seconds.sort_by(f64::total_cmp);
+        let good = errors.iter().filter(|e| **e < RECOVERED).count();
+        println!(
+            "{name}: {good} of {count} within 2 %; median error {:.3} %; median time {:.2} s, longest {:.2} s",
+            100.0 * errors[errors.len() / 2],
+            seconds[seconds.len() / 2],
+            seconds[seconds.len() - 1],
+        );
+    }
+}
