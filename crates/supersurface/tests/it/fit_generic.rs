@@ -29,7 +29,19 @@ enum Class {
     Tapered,
     Twisted,
     Bent,
+    /// Tapered, twisted and bent.
+    Deformed,
 }
+
+const CLASSES: [Class; 7] = [
+    Class::Hyperquadric,
+    Class::Supershape,
+    Class::Extended,
+    Class::Tapered,
+    Class::Twisted,
+    Class::Bent,
+    Class::Deformed,
+];
 
 impl Class {
     /// A random member with the model that it belongs to; `None` for a body that is too thin or not one at all.
@@ -41,47 +53,52 @@ impl Class {
             }
             Self::Supershape => (solid(supershape(random)?), GenericModel::Supershape),
             Self::Extended => {
-                let (profile, section) = (3 + random.index(2), 4);
+                let (profile, section) = (3 + random.index(2), 3 + random.index(3));
                 let axes = std::array::from_fn(|_| random.between(0.4, 1.0));
                 let mut values = |count: usize| -> Vec<f64> {
-                    (0..count).map(|_| random.between(0.25, 1.6)).collect()
+                    (0..count).map(|_| random.between(0.2, 1.7)).collect()
                 };
                 let shape = ExtendedSuperellipsoid::new(axes, &values(profile), &values(section));
                 let shape = Solid::RadialExtended(Box::new(shape.ok()?.radial()));
                 (solid(shape), GenericModel::Extended { profile, section })
             }
-            Self::Tapered | Self::Twisted | Self::Bent => {
-                let axes = std::array::from_fn(|_| random.between(0.2, 0.6));
-                let exponents = [random.between(0.3, 1.5), random.between(0.3, 1.5)];
-                let ring = random.between(1.6, 3.5);
-                let toroid = Solid::from(Supertoroid::new(axes, ring, exponents).ok()?);
-                let either = |random: &mut Stream| if random.uniform() < 0.5 { -1.0 } else { 1.0 };
-                let shape = match self {
-                    Self::Tapered => {
-                        let k = |r: &mut Stream| either(r) * r.between(0.15, 0.6);
-                        toroid.tapered([k(random), k(random)])
-                    }
-                    Self::Twisted => {
-                        let turns = either(random) * random.between(0.03, 0.12);
-                        toroid.twisted(turns)
-                    }
-                    _ => {
-                        let reach = axes[0].max(axes[1]) * (1.0 + ring);
-                        toroid.bent(random.between(0.2, 0.6) / reach, random.between(-3.1, 3.1))
-                    }
-                };
-                let is = |class| class == self;
+            Self::Tapered | Self::Twisted | Self::Bent | Self::Deformed => {
+                let either = |class| self == class || self == Self::Deformed;
                 let model = GenericModel::Toroid {
-                    taper: is(Self::Tapered),
-                    twist: is(Self::Twisted),
-                    bend: is(Self::Bent),
+                    taper: either(Self::Tapered),
+                    twist: either(Self::Twisted),
+                    bend: either(Self::Bent),
                 };
-                (solid(shape.ok()?), model)
+                (solid(toroid(model, random)?), model)
             }
         };
         let sides = sides(&shape);
         (sides.max() < 6.0 * sides.min()).then_some((shape, model))
     }
+}
+
+/// A ring with those deformations that a model has.
+fn toroid(model: GenericModel, random: &mut Stream) -> Option<Solid> {
+    let GenericModel::Toroid { taper, twist, bend } = model else { return None };
+    let axes = std::array::from_fn(|_| random.between(0.2, 0.6));
+    let exponents = [random.between(0.2, 1.6), random.between(0.2, 1.6)];
+    let ring = random.between(1.5, 4.0);
+    let mut shape = Solid::from(Supertoroid::new(axes, ring, exponents).ok()?);
+    let mut signed = |low: f64, high: f64| {
+        let v = random.between(low, high);
+        if random.uniform() < 0.5 { -v } else { v }
+    };
+    if taper {
+        shape = shape.tapered([signed(0.1, 0.7), signed(0.1, 0.7)]).ok()?;
+    }
+    if twist {
+        shape = shape.twisted(signed(0.03, 0.15)).ok()?;
+    }
+    if bend {
+        let reach = axes[0].max(axes[1]) * (1.0 + ring);
+        shape = shape.bent(signed(0.2, 0.7) / reach, signed(0.0, 1.6)).ok()?;
+    }
+    Some(shape)
 }
 
 fn solid(shape: Solid) -> GenericShape {
@@ -96,17 +113,15 @@ fn sides(shape: &impl Implicit) -> Vector {
 /// Planes in random directions, no two nearly the same.
 fn hyperquadric(terms: usize, random: &mut Stream) -> Option<Hyperquadric> {
     let mut planes: Vec<[f64; 4]> = Vec::new();
-    let mut exponents = Vec::new();
-    for _ in 0..terms {
+    for _ in 0..200 {
         let n = Vector::from_fn(|_, _| random.normal()).normalize();
         let alike = |p: &[f64; 4]| Vector::new(p[0], p[1], p[2]).normalize().dot(&n).abs() > 0.8;
-        if planes.iter().any(alike) {
-            return None;
+        if planes.len() < terms && !planes.iter().any(alike) {
+            let n = n / random.between(0.6, 1.2);
+            planes.push([n.x, n.y, n.z, random.between(-0.3, 0.3)]);
         }
-        let n = n / random.between(0.6, 1.2);
-        planes.push([n.x, n.y, n.z, random.between(-0.3, 0.3)]);
-        exponents.push(random.between(0.7, 2.5).exp());
     }
+    let exponents: Vec<f64> = planes.iter().map(|_| random.between(0.5, 3.0).exp()).collect();
     Hyperquadric::new(&planes, &exponents).ok().filter(Hyperquadric::is_bounded)
 }
 
@@ -143,6 +158,8 @@ struct Case {
     truth: Posed<GenericShape>,
     mesh: Mesh,
     size: f64,
+    /// The cloud is so many times as large as the truth.
+    unit: f64,
     points: Vec<Point>,
 }
 
@@ -151,10 +168,11 @@ fn case(class: Class, index: u64) -> Case {
     let mut random = Stream::new(100 + class as u64, index);
     let (shape, model) =
         (0..1000).find_map(|_| class.draw(&mut random)).expect("a body can be drawn");
-    // the size in metres comes with the points, as not every member can be scaled
+    // not every member can be scaled: the points are
     let own = sides(&shape).max();
     let turn = Vector::from_fn(|_, _| random.normal());
     let place = Vector::from_fn(|_, _| random.between(-2.0, 2.0) * own);
+    let unit = random.between(-3.0, 1.6).exp() / own;
     let pose = Pose::from_parts(Translation3::from(place), UnitQuaternion::new(turn));
     let truth = Posed::new(shape, pose).unwrap();
     let mesh = meshed(&truth);
@@ -163,10 +181,10 @@ fn case(class: Class, index: u64) -> Case {
         .map(|_| {
             let numbers = std::array::from_fn(|_| random.uniform());
             let (p, _) = sampler.sample_at(numbers).unwrap();
-            p + Vector::from_fn(|_, _| random.normal()) * (NOISE * own)
+            (p + Vector::from_fn(|_, _| random.normal()) * (NOISE * own)) * unit
         })
         .collect();
-    Case { model, truth, mesh, size: own, points }
+    Case { model, truth, mesh, size: own, unit, points }
 }
 
 fn meshed(shape: &Posed<GenericShape>) -> Mesh {
@@ -176,7 +194,9 @@ fn meshed(shape: &Posed<GenericShape>) -> Mesh {
 
 /// Mean of the distances from points of each surface to the other, in sizes.
 fn surface_distance(case: &Case, found: &GenericFit) -> f64 {
-    let other = meshed(&found.surface);
+    let (vertices, triangles) = meshed(&found.surface).into_parts();
+    let vertices = vertices.into_iter().map(|v| v / case.unit).collect();
+    let other = Mesh::new(vertices, triangles).unwrap();
     let one_way = |from: &Mesh, to: &Mesh| {
         let (sampler, mut random) = (from.sampler(), Stream::new(9, 0));
         let triangles: Vec<[Point; 3]> = to.corners().collect();
@@ -222,14 +242,7 @@ fn generic_table() {
     use std::time::Instant;
     let only = std::env::var("CLASS").unwrap_or_default();
     let count: u64 = std::env::var("COUNT").ok().and_then(|c| c.parse().ok()).unwrap_or(20);
-    for class in [
-        Class::Hyperquadric,
-        Class::Supershape,
-        Class::Extended,
-        Class::Tapered,
-        Class::Twisted,
-        Class::Bent,
-    ] {
+    for class in CLASSES {
         let name = format!("{class:?}");
         if !name.to_lowercase().contains(&only.to_lowercase()) {
             continue;
@@ -246,8 +259,8 @@ fn generic_table() {
                 Ok(f) => println!(
                     "  {name} {index:2}: error {:.3} %, residual {:.3} %, noise {:.3} %, inliers {:.3}, {} rounds, {:?}, {:?}",
                     100.0 * error,
-                    100.0 * f.residual / case.size,
-                    100.0 * f.noise / case.size,
+                    100.0 * f.residual / (case.size * case.unit),
+                    100.0 * f.noise / (case.size * case.unit),
                     f.inliers.iter().filter(|i| **i).count() as f64 / POINTS as f64,
                     f.iterations,
                     f.stopped,

@@ -89,21 +89,37 @@ impl Member for Extended {
 }
 
 impl Extended {
-    /// Superellipsoids of constant exponents in all roles of their axes, also turned by 45 degrees.
+    /// Superellipsoids of constant exponents in all roles of their axes, also turned by 45 degrees, each with the
+    /// knots of the section at all places that a quarter turn can give them.
     pub(super) fn starts(&self, ground: &Ground) -> Vec<Body<Self>> {
         let mut out = Vec::new();
         for frame in ground.frames.iter().flat_map(|f| f.roles()) {
             let [e1, e2] = frame.exponents;
-            let logs = frame.half.map(f64::ln);
-            out.push(self.body(logs, [e1, e2], frame.position, frame.rotation));
+            let [a, b, c] = frame.half.map(f64::ln);
             // equal axes have nearly the same outline with ε2 -> 2 - ε2
-            let dual = 2.0 - e2;
-            let grown = 0.5 * (1.0 - e2) * LN_2;
-            let mean = 0.5 * (logs[0] + logs[1]) + grown;
-            let turned = frame.rotation * Rotation3::new(Vector::z() * FRAC_PI_4);
-            out.push(self.body([mean, mean, logs[2]], [e1, dual], frame.position, turned));
+            let mean = 0.5 * (a + b + (1.0 - e2) * LN_2);
+            let straight = ([[a, b, c], [b, a, c]], [e1, e2], 0.0);
+            let dual = ([[mean, mean, c]; 2], [e1, 2.0 - e2], FRAC_PI_4);
+            for (axes, exponents, turn) in [straight, dual] {
+                for quarter in 0..self.quarters() {
+                    let turn = turn + FRAC_PI_2 * f64::from(quarter);
+                    let rotation = frame.rotation * Rotation3::new(Vector::z() * turn);
+                    let [even, odd] = axes;
+                    let axes = if quarter % 2 == 0 { even } else { odd };
+                    out.push(self.body(axes, exponents, frame.position, rotation));
+                }
+            }
         }
         out
+    }
+
+    /// Quarter turns about z that move the knots of the section to other places.
+    fn quarters(&self) -> u8 {
+        match self.section.len() {
+            n if n == 1 || n % 4 == 0 => 1,
+            n if n % 2 == 0 => 2,
+            _ => 4,
+        }
     }
 
     fn body(

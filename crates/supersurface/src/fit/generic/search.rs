@@ -16,9 +16,13 @@ use crate::shape::Posed;
 use crate::surface::Surface;
 use crate::{Point, Pose, Vector};
 
-/// Points that rank the starts, and that refine the best of them.
+/// Points that sort out many starts, that rank them, and that refine the best of them.
+const SKETCH: usize = 90;
 const COARSE: usize = 200;
 const MIDDLE: usize = 600;
+/// How many starts are ranked.
+const SHORTLIST: usize = 16;
+const SKETCH_ROUNDS: usize = 7;
 const COARSE_ROUNDS: usize = 14;
 const MIDDLE_ROUNDS: usize = 40;
 const FINE_ROUNDS: usize = 40;
@@ -239,21 +243,28 @@ impl Normalised {
         relatives: impl Fn(&Body<M>) -> Vec<Body<M>>,
         options: &GenericOptions,
     ) -> Result<GenericFit, FitError> {
-        let (coarse, middle) = (self.spread(COARSE), self.spread(MIDDLE));
-        let first = |_: &Hypothesis<M>| Schedule {
-            rounds: COARSE_ROUNDS,
-            scale: START_SCALE,
-            tolerance: 1e-3,
+        let (sketch, coarse) = (self.spread(SKETCH), self.spread(COARSE));
+        let schedule = |rounds| Schedule { rounds, scale: START_SCALE, tolerance: 1e-3 };
+        let rank = |bodies: Vec<Body<M>>| {
+            let mut starts: Vec<Hypothesis<M>> = bodies.into_iter().map(begin).collect();
+            if starts.len() > SHORTLIST {
+                // most are hopeless after a few rounds on few points
+                let tried = refine_all(&starts, &sketch, |_| schedule(SKETCH_ROUNDS));
+                starts = keep(tried, sketch.len(), SHORTLIST);
+            }
+            let after = |h: &Hypothesis<M>| Schedule {
+                scale: START_SCALE.min(2.0 * h.mixture.scale),
+                ..schedule(COARSE_ROUNDS)
+            };
+            refine_all(&starts, &coarse, after)
         };
-        let starts: Vec<Hypothesis<M>> = starts.into_iter().map(begin).collect();
-        let kept = keep(refine_all(&starts, &coarse, first), coarse.len(), options.kept);
-        let others: Vec<Hypothesis<M>> =
-            kept.iter().flat_map(|h| relatives(&h.body)).map(begin).collect();
-        let mut kept = kept;
+        let mut kept = keep(rank(starts), coarse.len(), options.kept);
+        let others: Vec<Body<M>> = kept.iter().flat_map(|h| relatives(&h.body)).collect();
         if !others.is_empty() {
-            kept.extend(refine_all(&others, &coarse, first));
+            kept.extend(rank(others));
             kept = keep(kept, coarse.len(), options.kept);
         }
+        let middle = self.spread(MIDDLE);
         let next = |h: &Hypothesis<M>| Schedule {
             rounds: MIDDLE_ROUNDS,
             scale: 2.0 * h.mixture.scale,
