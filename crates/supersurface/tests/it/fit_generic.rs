@@ -163,8 +163,9 @@ struct Case {
     points: Vec<Point>,
 }
 
-/// Cloud number `index` of a class: a body of 5 cm to 5 m anywhere, with noise on its surface points.
-fn case(class: Class, index: u64) -> Case {
+/// Cloud number `index` of a class: a body of 5 cm to 5 m anywhere, with noise on its surface points, of which a
+/// share is replaced by points anywhere in a box 1.4 times as large as the body's.
+fn case(class: Class, index: u64, outliers: f64) -> Case {
     let mut random = Stream::new(100 + class as u64, index);
     let (shape, model) =
         (0..1000).find_map(|_| class.draw(&mut random)).expect("a body can be drawn");
@@ -177,8 +178,16 @@ fn case(class: Class, index: u64) -> Case {
     let truth = Posed::new(shape, pose).unwrap();
     let mesh = meshed(&truth);
     let sampler = mesh.sampler();
+    let [low, high] = truth.shape().bounds();
+    let stray = |random: &mut Stream| {
+        let share = Vector::from_fn(|_, _| random.between(-0.2, 1.2));
+        truth.pose() * (low + (high - low).component_mul(&share))
+    };
     let points = (0..POINTS)
         .map(|_| {
+            if random.uniform() < outliers {
+                return stray(&mut random) * unit;
+            }
             let numbers = std::array::from_fn(|_| random.uniform());
             let (p, _) = sampler.sample_at(numbers).unwrap();
             (p + Vector::from_fn(|_, _| random.normal()) * (NOISE * own)) * unit
@@ -230,7 +239,7 @@ fn square_distance(p: &Point, [a, b, c]: &[Point; 3]) -> f64 {
 }
 
 fn recovered(class: Class, index: u64) -> f64 {
-    let case = case(class, index);
+    let case = case(class, index, 0.0);
     let found = fit_generic(&case.points, case.model, &GenericOptions::default()).unwrap();
     surface_distance(&case, &found)
 }
@@ -242,15 +251,15 @@ fn generic_table() {
     use std::time::Instant;
     let only = std::env::var("CLASS").unwrap_or_default();
     let count: u64 = std::env::var("COUNT").ok().and_then(|c| c.parse().ok()).unwrap_or(20);
-    for class in CLASSES {
-        let name = format!("{class:?}");
+    for (class, outliers) in CLASSES.into_iter().flat_map(|c| [(c, 0.0), (c, 0.2)]) {
+        let name = format!("{class:?} with {:.0} % outliers", 100.0 * outliers);
         if !name.to_lowercase().contains(&only.to_lowercase()) {
             continue;
         }
         let mut errors = Vec::new();
         let mut seconds = Vec::new();
         for index in 0..count {
-            let case = case(class, index);
+            let case = case(class, index, outliers);
             let start = Instant::now();
             let found = fit_generic(&case.points, case.model, &GenericOptions::default());
             seconds.push(start.elapsed().as_secs_f64());

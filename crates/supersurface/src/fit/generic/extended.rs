@@ -9,7 +9,7 @@ use nalgebra::Rotation3;
 
 use super::GenericShape;
 use super::jet::Jet;
-use super::member::{Body, Member, Range, range};
+use super::member::{AXES, Body, Member, Range, range};
 use super::search::Ground;
 use crate::Vector;
 use crate::numeric::spline::Spline;
@@ -63,7 +63,7 @@ impl Member for Extended {
     const POSED: bool = true;
 
     fn range(&self, number: usize) -> Range {
-        if number < 3 { range(-5.0, 2.5, 0.7) } else { range(0.1, 2.2, 0.3) }
+        if number < 3 { range(AXES[0], AXES[1], 0.7) } else { range(0.1, 2.2, 0.3) }
     }
 
     fn log_gauge(&self, numbers: &[Jet], [x, y, z]: &[Jet; 3]) -> Jet {

@@ -15,6 +15,7 @@ mod jet;
 mod member;
 mod search;
 mod solver;
+mod space;
 mod supershape;
 mod toroid;
 

@@ -6,6 +6,7 @@ use super::extended::Extended;
 use super::hyperquadric::Terms;
 use super::member::{Body, Member};
 use super::solver::{Hypothesis, Schedule, refine};
+use super::space::Space;
 use super::supershape;
 use super::toroid::Toroid;
 use super::{GenericFit, GenericModel, GenericOptions, Stopped};
@@ -28,8 +29,6 @@ const MIDDLE_ROUNDS: usize = 40;
 const FINE_ROUNDS: usize = 40;
 /// Scale of the noise in the first round of a start, and of a relative.
 const START_SCALE: f64 = 0.12;
-/// Density of outliers a unit of length.
-const OUTLIER_DENSITY: f64 = 0.25;
 /// A fit with a lesser share of inliers explains nothing.
 const LEAST_SHARE: f64 = 0.1;
 /// Costs a point that differ less are those of one optimum.
@@ -78,6 +77,7 @@ struct Normalised {
     centre: Vector,
     scale: f64,
     points: Vec<Vector>,
+    space: Space,
 }
 
 impl Normalised {
@@ -107,7 +107,8 @@ impl Normalised {
         if values[1] < 1e-10 * values[2] {
             return Err(FitError::Line { points: found });
         }
-        Ok(Self { centre, scale, points })
+        let space = Space::about(&points);
+        Ok(Self { centre, scale, points, space })
     }
 
     /// About `count` points, one of each of so many equal stretches of their order.
@@ -210,20 +211,21 @@ pub(super) fn search(
 fn refine_all<M: Member>(
     starts: &[Hypothesis<M>],
     points: &[Vector],
+    space: &Space,
     schedule: impl Fn(&Hypothesis<M>) -> Schedule + Sync,
 ) -> Vec<Hypothesis<M>> {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        starts.par_iter().map(|h| refine(h, points, &schedule(h))).collect()
+        starts.par_iter().map(|h| refine(h, points, space, &schedule(h))).collect()
     }
     #[cfg(not(feature = "parallel"))]
-    starts.iter().map(|h| refine(h, points, &schedule(h))).collect()
+    starts.iter().map(|h| refine(h, points, space, &schedule(h))).collect()
 }
 
 fn begin<M>(body: Body<M>) -> Hypothesis<M> {
     let mixture =
-        Mixture { law: Law::Gaussian, scale: 0.1, outliers: 0.1, density: OUTLIER_DENSITY };
+        Mixture { law: Law::Gaussian, scale: 0.1, outliers: 0.1, density: 1.0 };
     Hypothesis { body, mixture, cost: f64::MAX, iterations: 0, stopped: Stopped::Rounds }
 }
 
@@ -245,18 +247,22 @@ impl Normalised {
     ) -> Result<GenericFit, FitError> {
         let (sketch, coarse) = (self.spread(SKETCH), self.spread(COARSE));
         let schedule = |rounds| Schedule { rounds, scale: START_SCALE, tolerance: 1e-3 };
+        let is_shape =
+            |h: &Hypothesis<M>| h.body.member.shape(&h.body.numbers, self.scale).is_ok();
         let rank = |bodies: Vec<Body<M>>| {
             let mut starts: Vec<Hypothesis<M>> = bodies.into_iter().map(begin).collect();
             if starts.len() > SHORTLIST {
                 // most are hopeless after a few rounds on few points
-                let tried = refine_all(&starts, &sketch, |_| schedule(SKETCH_ROUNDS));
+                let tried = refine_all(&starts, &sketch, &self.space, |_| schedule(SKETCH_ROUNDS));
                 starts = keep(tried, sketch.len(), SHORTLIST);
             }
             let after = |h: &Hypothesis<M>| Schedule {
                 scale: START_SCALE.min(2.0 * h.mixture.scale),
                 ..schedule(COARSE_ROUNDS)
             };
-            refine_all(&starts, &coarse, after)
+            let mut ranked = refine_all(&starts, &coarse, &self.space, after);
+            ranked.retain(is_shape);
+            ranked
         };
         let mut kept = keep(rank(starts), coarse.len(), options.kept);
         let others: Vec<Body<M>> = kept.iter().flat_map(|h| relatives(&h.body)).collect();
@@ -270,11 +276,13 @@ impl Normalised {
             scale: 2.0 * h.mixture.scale,
             tolerance: 1e-4,
         };
-        let kept = keep(refine_all(&kept, &middle, next), middle.len(), 1);
+        let mut kept = refine_all(&kept, &middle, &self.space, next);
+        kept.retain(is_shape);
+        let kept = keep(kept, middle.len(), 1);
         let Some(best) = kept.first() else { return Err(FitError::NoAgreement { share: 0.0 }) };
         let fine = self.spread(options.most_points);
         let last = Schedule { rounds: FINE_ROUNDS, scale: best.mixture.scale, tolerance: 1e-5 };
-        self.judge(points, &refine(best, &fine, &last))
+        self.judge(points, &refine(best, &fine, &self.space, &last))
     }
 
     fn judge<M: Member>(

@@ -5,10 +5,11 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Stopped;
 use super::member::{Body, Member};
+use super::space::Space;
 use crate::Vector;
 use crate::fit::noise::Mixture;
 
-/// A body with its noise and its cost, the negative log-likelihood of the points.
+/// A body with its noise and its cost, the negative log-likelihood of the points as a density on the surface.
 #[derive(Clone, Debug)]
 pub(super) struct Hypothesis<M> {
     pub(super) body: Body<M>,
@@ -39,6 +40,7 @@ const TRIALS: usize = 5;
 pub(super) fn refine<M: Member>(
     start: &Hypothesis<M>,
     points: &[Vector],
+    space: &Space,
     schedule: &Schedule,
 ) -> Hypothesis<M> {
     let mut h = start.clone();
@@ -46,6 +48,7 @@ pub(super) fn refine<M: Member>(
     let mut damping = 1e-3;
     let mut failures = 0;
     h.stopped = Stopped::Rounds;
+    h.mixture.density = space.outlier_density(space.area(&h.body));
     let (mut distances, mut rows) = h.body.rows(points);
     h.mixture.update(&distances, NOISE_FLOOR.max(annealed), 2);
     for _ in 0..schedule.rounds {
@@ -79,8 +82,10 @@ pub(super) fn refine<M: Member>(
             break;
         }
     }
+    let area = space.area(&h.body);
+    h.mixture.density = space.outlier_density(area);
     h.mixture.update(&distances, NOISE_FLOOR, 6);
-    let cost = h.mixture.cost(&distances);
+    let cost = h.mixture.cost(&distances) + points.len() as f64 * area.ln();
     h.cost = if cost.is_finite() { cost } else { f64::MAX };
     h
 }

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Rotation3};
 
 use super::GenericShape;
 use super::jet::Jet;
-use super::member::{Body, Member, Range, range};
+use super::member::{AXES, Body, Member, Range, range};
 use super::search::Ground;
 use crate::Vector;
 use crate::fit::start::quantile;
@@ -47,7 +47,7 @@ impl Member for Toroid {
             TAPER | 7 => free(self.taper, 0.95),
             TWIST => free(self.twist, 1.0),
             BEND.. => free(self.bend, 1.5),
-            _ => range(-5.0, 2.5, 0.7),
+            _ => range(AXES[0], AXES[1], 0.7),
         }
     }
 
