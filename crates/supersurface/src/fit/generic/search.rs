@@ -21,14 +21,18 @@ use crate::{Point, Pose, Vector};
 const SKETCH: usize = 90;
 const COARSE: usize = 200;
 const MIDDLE: usize = 600;
-/// How many starts are ranked.
+/// Of more starts than this only a shortlist is ranked.
+const MANY: usize = 40;
 const SHORTLIST: usize = 16;
 const SKETCH_ROUNDS: usize = 7;
 const COARSE_ROUNDS: usize = 14;
 const MIDDLE_ROUNDS: usize = 40;
+const TIGHT_ROUNDS: usize = 12;
 const FINE_ROUNDS: usize = 40;
 /// Scale of the noise in the first round of a start, and of a relative.
 const START_SCALE: f64 = 0.12;
+/// Shares of the estimated noise that are tried in its place.
+const TIGHTER: [f64; 2] = [0.4, 0.4];
 /// A fit with a lesser share of inliers explains nothing.
 const LEAST_SHARE: f64 = 0.1;
 /// Costs a point that differ less are those of one optimum.
@@ -246,12 +250,13 @@ impl Normalised {
         options: &GenericOptions,
     ) -> Result<GenericFit, FitError> {
         let (sketch, coarse) = (self.spread(SKETCH), self.spread(COARSE));
-        let schedule = |rounds| Schedule { rounds, scale: START_SCALE, tolerance: 1e-3 };
+        let schedule =
+            |rounds| Schedule { rounds, scale: START_SCALE, ceiling: 1.0, tolerance: 1e-3 };
         let is_shape =
             |h: &Hypothesis<M>| h.body.member.shape(&h.body.numbers, self.scale).is_ok();
         let rank = |bodies: Vec<Body<M>>| {
             let mut starts: Vec<Hypothesis<M>> = bodies.into_iter().map(begin).collect();
-            if starts.len() > SHORTLIST {
+            if starts.len() > MANY {
                 // most are hopeless after a few rounds on few points
                 let tried = refine_all(&starts, &sketch, &self.space, |_| schedule(SKETCH_ROUNDS));
                 starts = keep(tried, sketch.len(), SHORTLIST);
@@ -274,14 +279,26 @@ impl Normalised {
         let next = |h: &Hypothesis<M>| Schedule {
             rounds: MIDDLE_ROUNDS,
             scale: 2.0 * h.mixture.scale,
+            ceiling: 1.0,
             tolerance: 1e-4,
         };
         let mut kept = refine_all(&kept, &middle, &self.space, next);
+        // a surface among outliers may be held off by noise that is thought too large
+        for share in TIGHTER {
+            let tight = |h: &Hypothesis<M>| Schedule {
+                rounds: TIGHT_ROUNDS,
+                scale: share * h.mixture.scale,
+                ceiling: share * h.mixture.scale,
+                tolerance: 1e-3,
+            };
+            let held = refine_all(&kept, &middle, &self.space, tight);
+            kept.extend(refine_all(&held, &middle, &self.space, next));
+            kept = keep(kept, middle.len(), options.kept);
+        }
         kept.retain(is_shape);
-        let kept = keep(kept, middle.len(), 1);
         let Some(best) = kept.first() else { return Err(FitError::NoAgreement { share: 0.0 }) };
         let fine = self.spread(options.most_points);
-        let last = Schedule { rounds: FINE_ROUNDS, scale: best.mixture.scale, tolerance: 1e-5 };
+        let last = Schedule { rounds: FINE_ROUNDS, scale: best.mixture.scale, ceiling: 1.0, tolerance: 1e-5 };
         self.judge(points, &refine(best, &fine, &self.space, &last))
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Schedule {
     pub(super) rounds: usize,
     /// Lowest scale of the first round; multiplied by [`DECAY`] in each.
     pub(super) scale: f64,
+    /// Most that the scale may be in all rounds.
+    pub(super) ceiling: f64,
     /// A round that gains less than this many nats a point ends the search.
     pub(super) tolerance: f64,
 }
@@ -50,7 +52,11 @@ pub(super) fn refine<M: Member>(
     h.stopped = Stopped::Rounds;
     h.mixture.density = space.outlier_density(space.area(&h.body));
     let (mut distances, mut rows) = h.body.rows(points);
-    h.mixture.update(&distances, NOISE_FLOOR.max(annealed), 2);
+    let estimate = |h: &mut Hypothesis<M>, distances: &[f64], annealed: f64| {
+        h.mixture.update(distances, NOISE_FLOOR.max(annealed), 2);
+        h.mixture.scale = h.mixture.scale.min(schedule.ceiling);
+    };
+    estimate(&mut h, &distances, annealed);
     for _ in 0..schedule.rounds {
         h.iterations += 1;
         let (matrix, gradient) = normal_equations(&distances, &rows, &h.mixture, h.body.count());
@@ -73,7 +79,7 @@ pub(super) fn refine<M: Member>(
         }
         let scale = h.mixture.scale;
         annealed *= DECAY;
-        h.mixture.update(&distances, NOISE_FLOOR.max(annealed), 2);
+        estimate(&mut h, &distances, annealed);
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (h.mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < h.mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance * points.len() as f64);

@@ -6,7 +6,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::Rotation3;
 
 use super::GenericShape;
 use super::jet::Jet;
@@ -33,6 +33,8 @@ const BEND: usize = 9;
 const COUNT: usize = 11;
 /// Factors of a taper are not less than this: there is no body where they are.
 const LEAST_FACTOR: f64 = 0.02;
+/// Shares of the points that lie within the hole of a start: a few that noise or outliers put there, or more of them.
+const HOLES: [f64; 2] = [0.04, 0.15];
 
 impl Member for Toroid {
     const POSED: bool = true;
@@ -133,26 +135,19 @@ impl Toroid {
             push([mean, mean, c, *ring, e1, 1.0], frame.position, turned);
         }
         for frame in ground.frames.iter().flat_map(|f| f.roles()) {
-            let columns = frame.rotation.matrix();
-            let middle = Vector::from_fn(|k, _| {
-                let axis: Vector = columns.column(k).into();
-                let mut heights: Vec<f64> = ground.points.iter().map(|p| p.dot(&axis)).collect();
-                0.5 * (quantile(&mut heights, 0.02) + quantile(&mut heights, 0.98))
-            });
-            let position = Matrix3::from(*columns) * middle;
             let [a, b, c] = frame.half;
-            let mut radii: Vec<f64> = ground
-                .points
-                .iter()
-                .map(|p| {
-                    let q = frame.rotation.inverse_transform_vector(&(p - position));
-                    (q.x / a).hypot(q.y / b)
-                })
-                .collect();
-            let hole = quantile(&mut radii, 0.04).clamp(0.1, 0.8);
-            let ring = (1.0 + hole) / (1.0 - hole);
-            let [a, b] = [a, b].map(|v| (v / (1.0 + ring)).ln());
-            push([a, b, c.ln(), ring, 0.7, 0.7], position, frame.rotation);
+            let radius = |p: &Vector| {
+                let q = frame.rotation.inverse_transform_vector(&(p - frame.position));
+                (q.z.abs() < c).then(|| (q.x / a).hypot(q.y / b))
+            };
+            let mut radii: Vec<f64> =
+                ground.points.iter().filter_map(radius).filter(|r| *r < 1.1).collect();
+            for share in HOLES {
+                let hole = quantile(&mut radii, share).clamp(0.1, 0.8);
+                let ring = (1.0 + hole) / (1.0 - hole);
+                let [a, b] = [a, b].map(|v| (v / (1.0 + ring)).ln());
+                push([a, b, c.ln(), ring, 0.7, 0.7], frame.position, frame.rotation);
+            }
         }
         out
     }
