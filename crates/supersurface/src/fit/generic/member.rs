@@ -20,6 +20,9 @@ pub(super) trait Member: Clone + Send + Sync {
     /// False where the numbers hold the pose, as planes do.
     const POSED: bool;
 
+    /// Scale of the noise in the first round of a start: some share of how thick the body is.
+    const START_SCALE: f64 = 0.12;
+
     /// The range in which a number stays, and the longest step that it takes at once.
     fn range(&self, number: usize) -> Range;
 

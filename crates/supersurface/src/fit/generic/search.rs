@@ -29,8 +29,6 @@ const COARSE_ROUNDS: usize = 14;
 const MIDDLE_ROUNDS: usize = 40;
 const TIGHT_ROUNDS: usize = 12;
 const FINE_ROUNDS: usize = 40;
-/// Scale of the noise in the first round of a start, and of a relative.
-const START_SCALE: f64 = 0.12;
 /// Shares of the estimated noise that are tried in its place.
 const TIGHTER: [f64; 2] = [0.4, 0.4];
 /// A fit with a lesser share of inliers explains nothing.
@@ -251,7 +249,7 @@ impl Normalised {
     ) -> Result<GenericFit, FitError> {
         let (sketch, coarse) = (self.spread(SKETCH), self.spread(COARSE));
         let schedule =
-            |rounds| Schedule { rounds, scale: START_SCALE, ceiling: 1.0, tolerance: 1e-3 };
+            |rounds| Schedule { rounds, scale: M::START_SCALE, ceiling: 2.0 * M::START_SCALE, tolerance: 1e-3 };
         let is_shape =
             |h: &Hypothesis<M>| h.body.member.shape(&h.body.numbers, self.scale).is_ok();
         let rank = |bodies: Vec<Body<M>>| {
@@ -262,7 +260,7 @@ impl Normalised {
                 starts = keep(tried, sketch.len(), SHORTLIST);
             }
             let after = |h: &Hypothesis<M>| Schedule {
-                scale: START_SCALE.min(2.0 * h.mixture.scale),
+                scale: M::START_SCALE.min(2.0 * h.mixture.scale),
                 ..schedule(COARSE_ROUNDS)
             };
             let mut ranked = refine_all(&starts, &coarse, &self.space, after);

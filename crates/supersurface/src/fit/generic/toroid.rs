@@ -38,6 +38,7 @@ const HOLES: [f64; 2] = [0.04, 0.15];
 
 impl Member for Toroid {
     const POSED: bool = true;
+    const START_SCALE: f64 = 0.06;
 
     fn range(&self, number: usize) -> Range {
         let free = |free: bool, most: f64| {
