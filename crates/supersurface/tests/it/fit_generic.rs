@@ -3,6 +3,7 @@
 //! The whole table (some minutes; figures of single clouds with `--nocapture`):
 //! `cargo test --release -p supersurface --test it -- --ignored --nocapture generic_table`
 
+use supersurface::fit::FitError;
 use supersurface::fit::generic::{
     GenericFit, GenericModel, GenericOptions, GenericShape, fit_generic,
 };
@@ -49,7 +50,10 @@ impl Class {
         let (shape, model) = match self {
             Self::Hyperquadric => {
                 let terms = 4 + random.index(3);
-                (GenericShape::Hyperquadric(hyperquadric(terms, random)?), GenericModel::Hyperquadric { terms })
+                (
+                    GenericShape::Hyperquadric(hyperquadric(terms, random)?),
+                    GenericModel::Hyperquadric { terms },
+                )
             }
             Self::Supershape => (solid(supershape(random)?), GenericModel::Supershape),
             Self::Extended => {
@@ -142,7 +146,8 @@ fn supershape(random: &mut Stream) -> Option<Solid> {
         let radii = |c: &Superformula| (0..400).map(|i| c.radius(f64::from(i) * 0.0157)).collect();
         curve.ok().filter(|c| {
             let radii: Vec<f64> = radii(c);
-            let (low, high) = radii.iter().fold((f64::MAX, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
+            let (low, high) =
+                radii.iter().fold((f64::MAX, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
             high < 2.5 * low
         })
     };
@@ -238,10 +243,93 @@ fn square_distance(p: &Point, [a, b, c]: &[Point; 3]) -> f64 {
     edge(a, b).min(edge(b, c)).min(edge(c, a))
 }
 
-fn recovered(class: Class, index: u64) -> f64 {
-    let case = case(class, index, 0.0);
+#[test]
+fn one_of_each_class_is_recovered() {
+    for class in CLASSES {
+        let case = case(class, 0, 0.0);
+        let found = fit_generic(&case.points, case.model, &GenericOptions::default()).unwrap();
+        let error = surface_distance(&case, &found);
+        assert!(error < 0.005, "{class:?}: {error}");
+        let noise = found.noise / (case.size * case.unit);
+        assert!((noise / NOISE - 1.0).abs() < 0.1, "{class:?}: {noise}");
+        assert!(found.inliers.iter().filter(|i| **i).count() > POINTS * 99 / 100);
+        let median = 0.6745 * found.noise;
+        assert!((found.residual / median - 1.0).abs() < 0.2);
+    }
+}
+
+#[test]
+fn outliers_are_told() {
+    let case = case(Class::Extended, 1, 0.2);
     let found = fit_generic(&case.points, case.model, &GenericOptions::default()).unwrap();
-    surface_distance(&case, &found)
+    assert!(surface_distance(&case, &found) < 0.005);
+    let left = found.inliers.iter().filter(|i| !**i).count() as f64 / POINTS as f64;
+    assert!((0.12..0.24).contains(&left), "{left}");
+}
+
+#[test]
+fn results_do_not_depend_on_the_unit_nor_on_the_run() {
+    let case = case(Class::Tapered, 3, 0.0);
+    let few = &case.points[..300];
+    let options = GenericOptions::default();
+    let fit = |points: &[Point]| fit_generic(points, case.model, &options).unwrap();
+    let found = fit(few);
+    assert_eq!(found.surface, fit(few).surface);
+    for unit in [1e-3, 1024.0] {
+        let scaled: Vec<Point> = few.iter().map(|p| p * unit).collect();
+        let same = fit(&scaled);
+        assert!((same.noise / (found.noise * unit) - 1.0).abs() < 1e-3);
+        let offset = found.surface.pose().inverse() * few[0];
+        let gap = found.surface.gauge(&few[0]) - same.surface.gauge(&scaled[0]);
+        assert!(gap.abs() < 1e-3, "{offset} {gap}");
+    }
+    // a point that is no number is no inlier and changes nothing
+    let mut more = few.to_vec();
+    more.insert(7, Point::new(f64::NAN, 0.0, f64::INFINITY));
+    let with = fit(&more);
+    assert!(!with.inliers[7] && with.surface == found.surface);
+}
+
+#[test]
+fn points_without_a_shape_are_answered() {
+    let models = [
+        GenericModel::Hyperquadric { terms: 4 },
+        GenericModel::Supershape,
+        GenericModel::Extended { profile: 3, section: 4 },
+        GenericModel::Toroid { taper: true, twist: true, bend: true },
+    ];
+    let mut random = Stream::new(1, 0);
+    let mut cloud = |sides: [f64; 3]| -> Vec<Point> {
+        let mut p = || Point::from(sides.map(|s| s * random.normal()));
+        (0..60).map(|_| p()).collect()
+    };
+    let wrong = [
+        Vec::new(),
+        cloud([0.0; 3]),
+        cloud([1.0, 0.0, 0.0]),
+        cloud([f64::NAN; 3]),
+        cloud([1e308; 3]),
+        cloud([1e-310; 3]),
+    ];
+    let odd = [cloud([1.0, 1.0, 0.0]), cloud([1e200; 3]), cloud([1e-200; 3]), cloud([1.0; 3])];
+    let options = GenericOptions { kept: 1, ..Default::default() };
+    for model in models {
+        for points in &wrong {
+            assert!(fit_generic(points, model, &options).is_err(), "{model:?}");
+        }
+        for points in &odd {
+            let found = fit_generic(points, model, &options);
+            assert!(found.is_err() || found.is_ok_and(|f| f.residual.is_finite()));
+        }
+    }
+    for model in [
+        GenericModel::Hyperquadric { terms: 2 },
+        GenericModel::Hyperquadric { terms: 99 },
+        GenericModel::Extended { profile: 0, section: 4 },
+    ] {
+        let found = fit_generic(&odd[3], model, &options);
+        assert!(matches!(found, Err(FitError::Invalid(_))), "{model:?}");
+    }
 }
 
 #[test]

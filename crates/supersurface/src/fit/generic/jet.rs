@@ -42,9 +42,8 @@ impl Jet {
     #[inline]
     fn pair(a: &Self, b: &Self, value: f64, [fa, fb]: [f64; 2], [aa, ab, bb]: [f64; 3]) -> Self {
         let (to_a, to_b) = (aa * a.along + ab * b.along, ab * a.along + bb * b.along);
-        let mixed = |i: usize| {
-            fa * a.mixed[i] + fb * b.mixed[i] + to_a * a.lanes[i] + to_b * b.lanes[i]
-        };
+        let mixed =
+            |i: usize| fa * a.mixed[i] + fb * b.mixed[i] + to_a * a.lanes[i] + to_b * b.lanes[i];
         Self {
             value,
             along: fa * a.along + fb * b.along,

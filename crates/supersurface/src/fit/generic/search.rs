@@ -97,7 +97,8 @@ impl Normalised {
             return Err(FitError::OnePoint { points: found });
         }
         let n = found as f64;
-        let centre = origin + points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n * reach;
+        let centre =
+            origin + points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n * reach;
         let square = points.iter().map(|p| ((p - centre) / reach).norm_squared()).sum::<f64>() / n;
         let scale = square.sqrt() * reach;
         if !scale.is_normal() || !finite(&centre) {
@@ -127,6 +128,7 @@ impl Normalised {
         let points = self.spread(MIDDLE);
         let cloud: Vec<Point> = self.points.iter().map(|p| Point::from(*p)).collect();
         let found = |family| {
+            #[allow(clippy::needless_update)]
             let options = FitOptions { family: Some(family), ..Default::default() };
             let fit = fit(&View::all_around(&cloud), &options).ok()?;
             Some(frame_of(&fit.surface))
@@ -226,8 +228,7 @@ fn refine_all<M: Member>(
 }
 
 fn begin<M>(body: Body<M>) -> Hypothesis<M> {
-    let mixture =
-        Mixture { law: Law::Gaussian, scale: 0.1, outliers: 0.1, density: 1.0 };
+    let mixture = Mixture { law: Law::Gaussian, scale: 0.1, outliers: 0.1, density: 1.0 };
     Hypothesis { body, mixture, cost: f64::MAX, iterations: 0, stopped: Stopped::Rounds }
 }
 
@@ -248,10 +249,12 @@ impl Normalised {
         options: &GenericOptions,
     ) -> Result<GenericFit, FitError> {
         let (sketch, coarse) = (self.spread(SKETCH), self.spread(COARSE));
-        let schedule =
-            |rounds| Schedule { rounds, scale: M::START_SCALE, ceiling: 2.0 * M::START_SCALE, tolerance: 1e-3 };
-        let is_shape =
-            |h: &Hypothesis<M>| h.body.member.shape(&h.body.numbers, self.scale).is_ok();
+        let schedule = |rounds| Schedule {
+            rounds,
+            scale: M::START_SCALE,
+            ceiling: 2.0 * M::START_SCALE,
+            tolerance: 1e-3,
+        };
         let rank = |bodies: Vec<Body<M>>| {
             let mut starts: Vec<Hypothesis<M>> = bodies.into_iter().map(begin).collect();
             if starts.len() > MANY {
@@ -264,7 +267,7 @@ impl Normalised {
                 ..schedule(COARSE_ROUNDS)
             };
             let mut ranked = refine_all(&starts, &coarse, &self.space, after);
-            ranked.retain(is_shape);
+            self.prefer_shapes(&mut ranked);
             ranked
         };
         let mut kept = keep(rank(starts), coarse.len(), options.kept);
@@ -293,11 +296,29 @@ impl Normalised {
             kept.extend(refine_all(&held, &middle, &self.space, next));
             kept = keep(kept, middle.len(), options.kept);
         }
-        kept.retain(is_shape);
+        self.prefer_shapes(&mut kept);
         let Some(best) = kept.first() else { return Err(FitError::NoAgreement { share: 0.0 }) };
         let fine = self.spread(options.most_points);
-        let last = Schedule { rounds: FINE_ROUNDS, scale: best.mixture.scale, ceiling: 1.0, tolerance: 1e-5 };
-        self.judge(points, &refine(best, &fine, &self.space, &last))
+        let last = Schedule {
+            rounds: FINE_ROUNDS,
+            scale: best.mixture.scale,
+            ceiling: 1.0,
+            tolerance: 1e-5,
+        };
+        let finest = refine(best, &fine, &self.space, &last);
+        self.judge(points, if self.is_shape(&finest) { &finest } else { best })
+    }
+
+    /// True when the numbers make a shape: a bend may fold, a hyperquadric may be empty.
+    fn is_shape<M: Member>(&self, h: &Hypothesis<M>) -> bool {
+        h.body.member.shape(&h.body.numbers, self.scale).is_ok()
+    }
+
+    /// Leaves out what is no shape, unless nothing is one: then the error says why.
+    fn prefer_shapes<M: Member>(&self, all: &mut Vec<Hypothesis<M>>) {
+        if all.iter().any(|h| self.is_shape(h)) {
+            all.retain(|h| self.is_shape(h));
+        }
     }
 
     fn judge<M: Member>(

@@ -127,8 +127,7 @@ fn outlines(frame: &Frame, points: &[Vector]) -> Vec<Outline> {
     let mean = belt.iter().map(|(_, r)| r).sum::<f64>() / n;
     let e = frame.exponents[1].clamp(0.15, 1.8);
     let same = (2.0f64 / e).ln();
-    let mut out =
-        vec![Outline { m: 4, curve: [same, 0.0, 0.0, a.ln(), b.ln()], turn: 0.0 }];
+    let mut out = vec![Outline { m: 4, curve: [same, 0.0, 0.0, a.ln(), b.ln()], turn: 0.0 }];
     for m in SYMMETRIES {
         if m == 0 {
             out.push(Outline { m, curve: wavy(0, 2.0, 0.3, mean), turn: 0.0 });
@@ -142,7 +141,12 @@ fn outlines(frame: &Frame, points: &[Vector]) -> Vec<Outline> {
         let (amplitude, crest) = (cos.hypot(sin), sin.atan2(cos) / f64::from(m));
         let half = PI / f64::from(m);
         // every other tip is of the other term
-        let turns = [(STAR, crest), (POLYGON, crest + half), (STAR, crest + 2.0 * half), (POLYGON, crest - half)];
+        let turns = [
+            (STAR, crest),
+            (POLYGON, crest + half),
+            (STAR, crest + 2.0 * half),
+            (POLYGON, crest - half),
+        ];
         let kinds = if m % 2 == 1 { 2 } else { 4 };
         for (exponent, turn) in turns.into_iter().take(kinds) {
             out.push(Outline { m, curve: wavy(m, exponent, amplitude, mean), turn });
