@@ -6,8 +6,10 @@
 //! `|∇g|` included. Starts come from the superellipsoid and the supertoroid that [`fit`](crate::fit::fit) finds,
 //! embedded in the model; noise and outliers are estimated as there.
 //!
-//! It takes points from all around an object, and about a hundred to a thousand times as long as the special fitter.
-//! It does not promise the global optimum.
+//! It takes points from all around an object and, on two cores, from some tenths of a second to about a second. Of made
+//! clouds (1500 points, noise of 0.5 % of the size) all 20 of each model are recovered within 2 % of the size, with a
+//! median of 0.04 to 0.08 %; with 20 % outliers too, but for toroids that are tapered, twisted and bent at once (15). It
+//! does not promise the global optimum.
 
 mod extended;
 mod hyperquadric;
