@@ -29,6 +29,7 @@ mod choose;
 mod columns;
 mod finish;
 mod free_space;
+pub mod generic;
 mod judge;
 mod kernel;
 mod near;

@@ -65,6 +65,12 @@ impl Mixture {
         Share { belongs: inlier / density, weight, density }
     }
 
+    /// Weight of one squared distance in the equivalent least squares problem, in 1/length².
+    pub(super) fn weight(&self, d: f64) -> f64 {
+        let share = self.share::<false>(d);
+        share.belongs * share.weight / (self.scale * self.scale)
+    }
+
     /// Probability that a point at distance `d` belongs to the surface.
     #[inline]
     pub(super) fn belongs(&self, d: f64) -> f64 {
@@ -127,7 +133,7 @@ struct Sums {
     cost: f64,
 }
 
-/// One pass over padded distances; the weights are kept where there is room for them.
+/// One pass over distances, of which only the first count; the weights are kept where there is room for them.
 struct Weigh<'a> {
     mixture: &'a Mixture,
     distances: &'a [f64],
@@ -141,8 +147,9 @@ impl Job for Weigh<'_> {
     fn run<const FUSED: bool>(self) {
         let precision = 1.0 / (self.mixture.scale * self.mixture.scale);
         let mut lanes = [[0.0; WIDTH]; 3];
-        for (b, d) in self.distances.as_chunks::<WIDTH>().0.iter().enumerate() {
-            let mut weights = [0.0; WIDTH];
+        for (b, block) in self.distances.chunks(WIDTH).enumerate() {
+            let (mut d, mut weights) = ([0.0; WIDTH], [0.0; WIDTH]);
+            d[..block.len()].copy_from_slice(block);
             for i in 0..WIDTH {
                 // padding has no say
                 let here = if b * WIDTH + i < self.count { 1.0 } else { 0.0 };
@@ -153,8 +160,8 @@ impl Job for Weigh<'_> {
                 lanes[1][i] += weight * d[i] * d[i];
                 lanes[2][i] -= here * ln::<FUSED>(share.density);
             }
-            if let Some(out) = self.weights.get_mut(b * WIDTH..(b + 1) * WIDTH) {
-                out.copy_from_slice(&weights);
+            if let Some(out) = self.weights.get_mut(b * WIDTH..b * WIDTH + block.len()) {
+                out.copy_from_slice(&weights[..block.len()]);
             }
         }
         let [belonging, spread, cost] = lanes.map(|l| l.iter().sum());

@@ -195,7 +195,7 @@ pub(super) fn refine(
     let cost = mixture.cost(&work.now.distances, n)
         + extra.cost
         + terms.spread_cost(&s, n)
-        + terms.facing_cost(&mixture, points, &work.now);
+        + terms.facing_cost(&s, &mixture, points, &work.now);
     Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
 }
 

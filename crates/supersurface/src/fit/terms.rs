@@ -1,7 +1,7 @@
 //! What is known beside the points: the support from which the body rises, the space that rays prove
 //! empty, and a weak preference for bodies that are not needles.
 
-use super::columns::{Evaluation, Sample};
+use super::columns::{Evaluation, Sample, distances};
 use super::noise::Mixture;
 use super::parameters::{COUNT, EXPONENT, POSITION, Parameters, RING, ROTATION, Row};
 use super::rays::Rays;
@@ -90,6 +90,9 @@ const SIZE_WEIGHT: f64 = 3.0;
 /// The same where not all is seen and no ray is known: noise makes extrapolated bodies too large.
 const PART_SIZE_WEIGHT: f64 = 15.0;
 
+/// A point is hidden when so much of the body, in normalised lengths, lies before it.
+const LEAST_HIDING: f64 = 0.05;
+
 /// What the terms stand beside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beside<'a> {
@@ -130,23 +133,29 @@ impl Terms {
     }
 
     /// What the points on sides that face away from the sensor cost: it cannot have seen them there, so they
-    /// are outliers.
+    /// are outliers. At a rim noise carries points around the edge; so a step towards the sensor must lead into the body.
     pub(super) fn facing_cost(
         &self,
+        s: &Parameters,
         mixture: &Mixture,
         points: &Sample,
         evaluation: &Evaluation,
     ) -> f64 {
         let Some(viewpoint) = self.viewpoint else { return 0.0 };
-        let mut cost = 0.0;
-        for i in 0..points.len() {
-            let normal = evaluation.outwards(i);
-            let ray = points.point(i) - viewpoint;
-            if normal.dot(&ray) > 0.4 * normal.norm() * ray.norm() {
-                cost += mixture.price_of_leaving(evaluation.distances[i]);
-            }
-        }
-        cost
+        let step = (6.0 * mixture.scale).max(LEAST_HIDING);
+        let away = |i: &usize| {
+            let ray = points.point(*i) - viewpoint;
+            let normal = evaluation.outwards(*i);
+            normal.dot(&ray) > 0.4 * normal.norm() * ray.norm()
+        };
+        let suspects: Vec<usize> = (0..points.len()).filter(away).collect();
+        let before = suspects.iter().map(|i| {
+            let p = points.point(*i);
+            p - (p - viewpoint).normalize() * step
+        });
+        let depths = distances(s, before);
+        let hidden = suspects.iter().zip(depths).filter(|(_, d)| *d < -0.25 * step);
+        hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i])).sum()
     }
 
     /// Adds all terms.

@@ -4,6 +4,7 @@ mod assembly;
 mod closest;
 mod combined;
 mod conformance;
+mod fit_generic;
 mod floors;
 mod golden_antipodal;
 mod golden_deform;
