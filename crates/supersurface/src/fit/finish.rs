@@ -29,7 +29,7 @@ const COMPARING: usize = 400;
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
 pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspace) -> Hypothesis {
     let to_the_end = |h: &Hypothesis, terms: &Terms, work: &mut Workspace| {
-        refine(h, &cloud.fine, terms, &schedule(15, RAYS, h.mixture.scale), work)
+        refine(h, &cloud.fine, terms, &schedule(std::env::var("FR").map_or(15, |v| v.parse().unwrap()), RAYS, h.mixture.scale), work)
     };
     let best = to_the_end(&pool[0], &cloud.terms, work);
     if std::env::var("SS_DEBUG").is_ok() {

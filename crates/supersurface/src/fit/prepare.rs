@@ -104,10 +104,11 @@ impl Normalised {
             }
             _ => view.free.iter().map(|p| inward(&p.coords)).collect(),
         };
-        let reach = 0.55 * sides.max().max(tallest);
+        let seen = if parted { box_sides(start) } else { sides };
+        let reach = 0.55 * seen.max().max(tallest);
         let before = outside.map_or(Vec::new(), |viewpoint| {
             let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
-            fine.iter().map(nearer).collect()
+            start.iter().map(nearer).collect()
         });
         let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
         Ok(Self {

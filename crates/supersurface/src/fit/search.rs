@@ -15,7 +15,7 @@ use super::terms::{Sight, Terms};
 const MIDDLE_RAYS: usize = 24;
 /// How many starts of a single view are ranked, and how many of all are refined.
 const SHORTLIST: usize = 8;
-const KEPT: usize = 3;
+const KEPT: usize = 4;
 /// How often the near-symmetries are tried (for both efforts).
 const SWITCHES: [usize; 2] = [1, 2];
 /// Share of points that a body may leave out without doubt.
@@ -68,6 +68,7 @@ fn search(
             *h = refine(h, points, terms, &coarse_schedule(h, rounds), work);
         }
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        ranked.dedup_by(|b, a| is_same(a, b));
         ranked.truncate(kept);
     }
     if terms.sight == Sight::OneSide {
@@ -76,7 +77,7 @@ fn search(
         }
     }
     for h in &ranked {
-        let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
+        let schedule = schedule(std::env::var("MR").map_or(12, |v| v.parse().unwrap()), MIDDLE_RAYS, 2.0 * h.mixture.scale);
         add(pool, refine(h, &cloud.middle, terms, &schedule, work));
     }
     for _ in 0..SWITCHES[cloud.effort as usize] {
@@ -91,6 +92,12 @@ fn search(
             break;
         }
     }
+}
+
+/// True for two ways to the same body.
+fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
+    let apart = (a.parameters.position - b.parameters.position).norm();
+    (a.cost - b.cost).abs() < SAME && apart < 0.02
 }
 
 /// Adds a hypothesis, best first, unless it is known.

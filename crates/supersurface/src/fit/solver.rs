@@ -177,6 +177,7 @@ pub(super) fn refine(
             }
             damping = (damping * 6.0).max(1e-4);
         }
+        if std::env::var("SS_LM").is_ok() && n > 900 { eprintln!("lm before {before:.2} gain {gain:?} damping {damping:.1e} scale {:.4} fail {failures} axes {:.3?} e {:.3?} intr {}", mixture.scale, s.log_axes.map(f64::exp), s.exponents, work.intrusions.len()); }
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);

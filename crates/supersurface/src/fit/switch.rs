@@ -12,8 +12,9 @@ pub(super) fn relatives(s: &Parameters, viewpoint: Option<Vector>) -> Vec<Parame
     if s.family.is_ring() {
         out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
     } else if !s.family.is_deformed() {
-        out.extend([1, 2].map(|shift| cycled(s, shift)));
-        out.extend(dual(s));
+        let others = [1, 2].map(|shift| cycled(s, shift));
+        out.extend(others);
+        out.extend([*s, others[0], others[1]].iter().filter_map(dual));
     } else {
         out.extend(dual(s));
     }
