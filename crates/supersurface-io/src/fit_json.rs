@@ -3,7 +3,7 @@
 //! Lengths are metres, angles radians, quaternions `wxyz`; the pose is in the frame of the cloud.
 
 use serde::Serialize;
-use supersurface::fit::{Fit, FitError};
+use supersurface::fit::{Covariance, Fit, FitError, Stopped};
 
 use crate::surface_row::SurfaceRow;
 
@@ -66,6 +66,23 @@ struct QualityRow {
     residual: f64,
     noise: f64,
     inlier_share: f64,
+    iterations: usize,
+    stopped: &'static str,
+    covariance: Option<CovarianceRow>,
+}
+
+#[derive(Serialize)]
+struct CovarianceRow {
+    parameters: Vec<&'static str>,
+    matrix: Vec<Vec<f64>>,
+}
+
+impl CovarianceRow {
+    fn new(covariance: &Covariance) -> Self {
+        let row = |i: usize| covariance.matrix.row(i).iter().copied().collect();
+        let matrix = (0..covariance.names.len()).map(row).collect();
+        Self { parameters: covariance.names.clone(), matrix }
+    }
 }
 
 impl QualityRow {
@@ -76,6 +93,13 @@ impl QualityRow {
             residual: fit.residual,
             noise: fit.noise,
             inlier_share: fit.inlier_share(),
+            iterations: fit.iterations,
+            stopped: match fit.stopped {
+                Stopped::Converged => "converged",
+                Stopped::Stuck => "stuck",
+                Stopped::Rounds => "rounds",
+            },
+            covariance: fit.covariance.as_ref().map(CovarianceRow::new),
         }
     }
 }

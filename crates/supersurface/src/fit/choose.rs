@@ -1,12 +1,15 @@
 //! Which family: by the likelihood of the points and by whether the hole is really seen.
 
 use super::columns::{Evaluation, Sample, distances};
+use super::finish::{BLURRED, COMPARING, every};
 use super::parameters::Family;
 use super::prepare::Normalised;
 use super::rays::Rays;
-use super::search::best;
-use super::solver::Hypothesis;
+use super::search::{best, schedule};
+use super::smeared::smeared_cost;
+use super::solver::{Hypothesis, Workspace, refine};
 use super::start::quantile;
+use super::terms::Sight;
 use crate::Vector;
 
 /// Lines of sight that are looked at to see whether a body is hollow.
@@ -27,8 +30,56 @@ const PATCH: f64 = 8.0;
 /// Fewer points on the wall of a hole than this show none.
 const LEAST_INNER: usize = 12;
 
+/// The best of some families and its margin in nats over the next best that was tried.
+///
+/// Superellipsoid and supertoroid first, by what is seen of a hole; the winner then stands against the deformed families
+/// by evidence.
+pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f64) {
+    let asked = |family| families.contains(&family);
+    let plain = match (asked(Family::Superellipsoid), asked(Family::Supertoroid)) {
+        (true, true) => Some(ellipsoid_or_toroid(cloud)),
+        (true, false) => Some((best(cloud, Family::Superellipsoid), 0.0)),
+        (false, true) => Some((best(cloud, Family::Supertoroid), 0.0)),
+        (false, false) => None,
+    };
+    let deformed = families.iter().filter(|f| f.is_deformed()).map(|f| best(cloud, *f));
+    let mut rivals: Vec<Hypothesis> = plain.iter().map(|p| p.0).chain(deformed).collect();
+    if let (Some((h, margin)), 1) = (plain, rivals.len()) {
+        return (h, margin);
+    }
+    let evidence = evidence(cloud, &rivals);
+    let mut order: Vec<usize> = (0..rivals.len()).collect();
+    order.sort_by(|a, b| evidence[*b].total_cmp(&evidence[*a]));
+    match order[..] {
+        [first, second, ..] => (rivals.swap_remove(first), evidence[first] - evidence[second]),
+        [only] => (rivals.swap_remove(only), 0.0),
+        [] => (best(cloud, Family::Superellipsoid), 0.0),
+    }
+}
+
+/// Logarithm of the evidence of each hypothesis, up to a common constant: the likelihood of all points under the same
+/// terms, at a rate of independent points, less half a logarithm of their number for every parameter (BIC).
+fn evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Vec<f64> {
+    let noise = rivals.iter().map(|h| h.mixture.scale).fold(f64::INFINITY, f64::min);
+    let mut work = Workspace::default();
+    let cost = |h: &Hypothesis, work: &mut Workspace| match cloud.terms.sight {
+        Sight::AllAround { volume } if noise > BLURRED => {
+            let points = every(&cloud.points, COMPARING);
+            let cost = smeared_cost(&h.parameters, &h.mixture, &points, noise, volume);
+            cost * cloud.points.len() as f64 / points.len() as f64
+        }
+        _ => refine(h, &cloud.fine, &cloud.terms, &schedule(0, 0, 0.0), work).cost,
+    };
+    let independent = cloud.points.len() as f64 / PATCH;
+    let price = 0.5 * independent.max(2.0).ln();
+    rivals
+        .iter()
+        .map(|h| -cost(h, &mut work) / PATCH - price * h.parameters.family.freedoms() as f64)
+        .collect()
+}
+
 /// The better of superellipsoid and supertoroid, and its margin in nats.
-pub(super) fn choose(cloud: &Normalised) -> (Hypothesis, f64) {
+fn ellipsoid_or_toroid(cloud: &Normalised) -> (Hypothesis, f64) {
     let ellipsoid = best(cloud, Family::Superellipsoid);
     if !may_be_hollow(cloud, &ellipsoid) {
         return (ellipsoid, 0.0);

@@ -15,56 +15,25 @@ use crate::numeric::random::Stream;
 
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
+/// Most rounds on all points.
+const ROUNDS: usize = 15;
 /// Share of the surface that must have points near it for the points to show all of it.
 pub(super) const COVERED: f64 = 0.9;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.01;
-const BLURRED: f64 = 0.02;
+pub(super) const BLURRED: f64 = 0.02;
 /// Most hypotheses that are compared in the end, and by how many nats a point the last may be worse at first.
 const COMPARED: usize = 4;
 const WORSE: f64 = 0.3;
 /// Points by which bodies are compared.
-const COMPARING: usize = 400;
+pub(super) const COMPARING: usize = 400;
 
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
 pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspace) -> Hypothesis {
     let to_the_end = |h: &Hypothesis, terms: &Terms, work: &mut Workspace| {
-        refine(h, &cloud.fine, terms, &schedule(std::env::var("FR").map_or(15, |v| v.parse().unwrap()), RAYS, h.mixture.scale), work)
+        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
     let best = to_the_end(&pool[0], &cloud.terms, work);
-    if std::env::var("SS_DEBUG").is_ok() {
-        for h in pool {
-            dbg_h("pool", h);
-        }
-        dbg_h("best", &best);
-        eprintln!("coverage {:.3}", coverage(&best, &cloud.middle));
-    }
-    if let Ok(t) = std::env::var("TRUTH") {
-        let v: Vec<f64> = t.split(',').map(|x| x.parse().unwrap()).collect();
-        let mut p = pool[0].parameters;
-        for k in 0..3 {
-            p.log_axes[k] = (v[k] / cloud.scale).ln();
-            p.position[k] = (v[6 + k] - cloud.centre[k]) / cloud.scale;
-        }
-        p.ring = v[3];
-        p.exponents = [v[4].clamp(0.05, 1.97), v[5].clamp(0.05, 1.97)];
-        p.rotation = nalgebra::Rotation3::from_matrix_unchecked(nalgebra::Matrix3::from_row_slice(
-            &v[9..18],
-        ));
-        let h = Hypothesis { parameters: p, ..pool[0] };
-        let h = Hypothesis {
-            mixture: super::noise::Mixture { scale: 0.05, outliers: 0.1, ..h.mixture },
-            ..h
-        };
-        let m = refine(&h, &cloud.middle, &cloud.terms, &schedule(12, 24, 0.0), work);
-        dbg_h("truth middle", &m);
-        let m = refine(&h, &cloud.fine, &cloud.terms, &schedule(15, RAYS, 0.0), work);
-        dbg_h("truth", &m);
-        if std::env::var("USETRUTH").is_ok() {
-            let near = Schedule { near: true, ..schedule(10, RAYS, m.mixture.scale) };
-            return refine(&m, &cloud.fine, &cloud.terms, &near, work);
-        }
-    }
     let Sight::AllAround { volume } = cloud.terms.sight else {
         if cloud.effort == Effort::Quick {
             return best;
@@ -96,26 +65,12 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
     cheapest(corrected.collect()).unwrap_or(best)
 }
 
-pub(super) fn dbg_h(what: &str, h: &Hypothesis) {
-    let p = &h.parameters;
-    eprintln!(
-        "{what}: cost {:.2} scale {:.4} out {:.3} axes {:.3?} ring {:.2} e {:.2?} at {:.2?} area {:.2}",
-        h.cost,
-        h.mixture.scale,
-        h.mixture.outliers,
-        p.log_axes.map(f64::exp),
-        p.ring,
-        p.exponents,
-        p.position.as_slice(),
-        p.area()
-    );
-}
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
     rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// About `count` of the points, evenly over their order.
-fn every(points: &[Vector], count: usize) -> Vec<Vector> {
+pub(super) fn every(points: &[Vector], count: usize) -> Vec<Vector> {
     points.iter().step_by(points.len().div_ceil(count)).copied().collect()
 }
 

@@ -1,6 +1,7 @@
 //! From the best body back to the view: units, every point judged, how sure all is.
 
 use super::columns::distances;
+use super::covariance::covariance;
 use super::prepare::Normalised;
 use super::solver::Hypothesis;
 use super::start::quantile;
@@ -24,9 +25,11 @@ pub(super) fn judge(
     let mut distances = distances(s, finite);
     let mut next = distances.iter();
     let mut judge = |p: &Point| {
-        is_finite(&inward(p)) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5)
+        let d = if is_finite(&inward(p)) { next.next() } else { None };
+        d.map_or(0.0, |d| h.mixture.belongs(*d) as f32)
     };
-    let inliers: Vec<bool> = view.points.iter().map(&mut judge).collect();
+    let probabilities: Vec<f32> = view.points.iter().map(&mut judge).collect();
+    let inliers: Vec<bool> = probabilities.iter().map(|p| *p > 0.5).collect();
     let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
     distances.iter_mut().for_each(|d| *d = d.abs());
     if share.is_nan() || share < LEAST_SHARE {
@@ -38,6 +41,10 @@ pub(super) fn judge(
         noise: h.mixture.scale * cloud.scale,
         residual: quantile(&mut distances, 0.5) * cloud.scale,
         inliers,
+        probabilities,
         margin,
+        covariance: covariance(cloud, h),
+        iterations: h.rounds,
+        stopped: h.stopped,
     })
 }

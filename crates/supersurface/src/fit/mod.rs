@@ -27,6 +27,7 @@
 mod bias;
 mod choose;
 mod columns;
+mod covariance;
 mod finish;
 mod free_space;
 pub mod generic;
@@ -48,8 +49,10 @@ mod start;
 mod switch;
 mod terms;
 
+pub use covariance::Covariance;
 pub use free_space::{free_points, outline_points};
 pub use parameters::Family;
+pub use solver::Stopped;
 
 use self::choose::choose;
 use self::judge::judge;
@@ -138,9 +141,17 @@ pub struct Fit {
     /// Which of the view's points belong to the surface (probability over one half); false for points that
     /// are not finite.
     pub inliers: Vec<bool>,
-    /// Evidence for the chosen family against the other, in nats, after the price of parameters; 0 when one
-    /// family was asked for.
+    /// Probability of each of the view's points to belong to the surface, in [0, 1]; 0 for those that are not finite.
+    pub probabilities: Vec<f32>,
+    /// Evidence for the chosen family against the next best, in nats, after the price of parameters; 0 when one
+    /// family was asked for or no other was worth a trial.
     pub margin: f64,
+    /// How sure the parameters are; `None` where the points leave that open.
+    pub covariance: Option<Covariance>,
+    /// Rounds of the solver on the way from the start to this surface.
+    pub iterations: usize,
+    /// Why the last rounds ended.
+    pub stopped: Stopped,
 }
 
 impl Fit {
@@ -191,7 +202,7 @@ pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
     let cloud = Normalised::new(view, options.effort)?;
     let (hypothesis, margin) = match options.families {
         [family] => (best(&cloud, *family), 0.0),
-        _ => choose(&cloud),
+        families => choose(&cloud, families),
     };
     judge(&cloud, view, &hypothesis, margin)
 }

@@ -37,6 +37,8 @@ pub(super) struct Normalised {
     pub(super) frames: Vec<Frame>,
     pub(super) terms: Terms,
     pub(super) effort: Effort,
+    /// Finite points in the view.
+    pub(super) total: usize,
 }
 
 impl Normalised {
@@ -122,6 +124,7 @@ impl Normalised {
             points: fine,
             terms,
             effort,
+            total: found,
         })
     }
 }

@@ -6,7 +6,7 @@ use super::finish::{COVERED, coverage, finish};
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
 use super::prepare::Normalised;
-use super::solver::{Hypothesis, Schedule, Workspace, refine};
+use super::solver::{Hypothesis, Schedule, Stopped, Workspace, refine};
 use super::start::{Frame, other_frames, starts};
 use super::switch::relatives;
 use super::terms::{Sight, Terms};
@@ -71,13 +71,8 @@ fn search(
         ranked.dedup_by(|b, a| is_same(a, b));
         ranked.truncate(kept);
     }
-    if terms.sight == Sight::OneSide {
-        for h in &mut ranked {
-            h.mixture.law = Law::StudentT;
-        }
-    }
     for h in &ranked {
-        let schedule = schedule(std::env::var("MR").map_or(12, |v| v.parse().unwrap()), MIDDLE_RAYS, 2.0 * h.mixture.scale);
+        let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
         add(pool, refine(h, &cloud.middle, terms, &schedule, work));
     }
     for _ in 0..SWITCHES[cloud.effort as usize] {
@@ -109,28 +104,17 @@ fn add(pool: &mut Vec<Hypothesis>, h: Hypothesis) {
 }
 
 fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
-    let law = if terms.sight == Sight::OneSide && std::env::var("GL").is_err() {
-        Law::StudentT
-    } else {
-        Law::Gaussian
-    };
+    let law = if terms.sight == Sight::OneSide { Law::StudentT } else { Law::Gaussian };
     let mixture = Mixture { law, scale: 0.1, outliers: 0.3, density: 1.0 };
-    Hypothesis { parameters: *s, mixture, cost: f64::MAX }
+    Hypothesis { parameters: *s, mixture, cost: f64::MAX, rounds: 0, stopped: Stopped::Rounds }
 }
 
 /// The scale of the first rounds is tied to the start's own body, so that a small body among outliers is not
 /// swallowed by a wide kernel; a body that has settled starts from its noise.
 fn coarse_schedule(h: &Hypothesis, rounds: usize) -> Schedule {
     let size = h.parameters.half_extents().iter().sum::<f64>() / 3.0;
-    let scale = if h.cost < f64::MAX {
-        h.mixture.scale.min(0.04 * size)
-    } else {
-        std::env::var("S0").map_or(0.12, |v| v.parse::<f64>().unwrap()) * size
-    };
-    Schedule {
-        leash: std::env::var("LE").map_or(1.5, |v| v.parse::<f64>().unwrap()),
-        ..schedule(rounds, 0, scale)
-    }
+    let scale = if h.cost < f64::MAX { h.mixture.scale.min(0.04 * size) } else { 0.12 * size };
+    Schedule { leash: 1.5, ..schedule(rounds, 0, scale) }
 }
 
 pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {

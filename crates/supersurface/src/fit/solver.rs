@@ -15,6 +15,21 @@ pub(super) struct Hypothesis {
     pub(super) parameters: Parameters,
     pub(super) mixture: Mixture,
     pub(super) cost: f64,
+    /// Rounds that were made, from the start on.
+    pub(super) rounds: usize,
+    /// Why the last rounds ended.
+    pub(super) stopped: Stopped,
+}
+
+/// Why the iteration of a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// A round gained nothing that counts.
+    Converged,
+    /// No step lowered the cost any more: rounding or a kink of the surface.
+    Stuck,
+    /// The rounds were used up while each still gained a little.
+    Rounds,
 }
 
 /// How long to iterate and how the noise comes down.
@@ -153,7 +168,9 @@ pub(super) fn refine(
     work.accept();
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
+    let (mut rounds, mut stopped) = (start.rounds, Stopped::Rounds);
     for _ in 0..schedule.rounds {
+        rounds += 1;
         work.look(&s, terms, schedule.rays);
         let mut normal = work.normal(s.family, &mixture, n);
         terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
@@ -177,7 +194,6 @@ pub(super) fn refine(
             }
             damping = (damping * 6.0).max(1e-4);
         }
-        if std::env::var("SS_LM").is_ok() && n > 900 { eprintln!("lm before {before:.2} gain {gain:?} damping {damping:.1e} scale {:.4} fail {failures} axes {:.3?} e {:.3?} intr {}", mixture.scale, s.log_axes.map(f64::exp), s.exponents, work.intrusions.len()); }
         let scale = mixture.scale;
         annealed *= schedule.decay;
         mixture.density = terms.outlier_density(&s);
@@ -185,7 +201,12 @@ pub(super) fn refine(
         failures = if gain.is_some() { 0 } else { failures + 1 };
         let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         let small = gain.is_some_and(|g| g < schedule.tolerance);
-        if (settled && small) || (failures >= 2 && annealed < mixture.scale) {
+        if settled && small {
+            stopped = Stopped::Converged;
+            break;
+        }
+        if failures >= 2 && annealed < mixture.scale {
+            stopped = Stopped::Stuck;
             break;
         }
     }
@@ -197,7 +218,8 @@ pub(super) fn refine(
         + extra.cost
         + terms.spread_cost(&s, n)
         + terms.facing_cost(&s, &mixture, points, &work.now);
-    Hypothesis { parameters: s, mixture, cost: if cost.is_finite() { cost } else { f64::MAX } }
+    let cost = if cost.is_finite() { cost } else { f64::MAX };
+    Hypothesis { parameters: s, mixture, cost, rounds, stopped }
 }
 
 /// The damped step `-(H + λ diag H)⁻¹ b` over the parameters that may move; `None` when the matrix is not
