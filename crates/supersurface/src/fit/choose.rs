@@ -1,5 +1,6 @@
 //! Which family: by the likelihood of the points and by whether the hole is really seen.
 
+use super::Effort;
 use super::columns::{Evaluation, Sample, distances};
 use super::finish::{BLURRED, COMPARING, every};
 use super::parameters::Family;
@@ -30,10 +31,17 @@ const PATCH: f64 = 8.0;
 /// Fewer points on the wall of a hole than this show none.
 const LEAST_INNER: usize = 12;
 
+/// Deviations below this, in normalised lengths, are no sign of another shape.
+const EXACT: f64 = 1e-3;
+/// Correlation of neighbouring deviations above which they are no noise.
+const CORRELATED: f64 = 0.15;
+/// A body with more parameters must explain its points by this much less noise: else it has taken outliers in.
+const CLEANER: f64 = 0.93;
+
 /// The best of some families and its margin in nats over the next best that was tried.
 ///
-/// Superellipsoid and supertoroid first, by what is seen of a hole; the winner then stands against the deformed families
-/// by evidence.
+/// Superellipsoid and supertoroid first. Where the winner's deviations look like noise there is nothing that a
+/// deformation could explain; else the deformed families stand against it by evidence.
 pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f64) {
     let asked = |family| families.contains(&family);
     let plain = match (asked(Family::Superellipsoid), asked(Family::Supertoroid)) {
@@ -42,19 +50,57 @@ pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f6
         (false, true) => Some((best(cloud, Family::Supertoroid), 0.0)),
         (false, false) => None,
     };
-    let deformed = families.iter().filter(|f| f.is_deformed()).map(|f| best(cloud, *f));
-    let mut rivals: Vec<Hypothesis> = plain.iter().map(|p| p.0).chain(deformed).collect();
-    if let (Some((h, margin)), 1) = (plain, rivals.len()) {
-        return (h, margin);
+    let deformed = || families.iter().filter(|f| f.is_deformed()).map(|f| best(cloud, *f));
+    let rivals: Vec<Hypothesis> = match plain {
+        Some((h, margin)) if !is_misfit(cloud, &h) => return (h, margin),
+        Some((h, _)) => {
+            let cleaner = |d: &Hypothesis| d.mixture.scale < CLEANER * h.mixture.scale;
+            std::iter::once(h).chain(deformed().filter(cleaner)).collect()
+        }
+        None => deformed().collect(),
+    };
+    match by_evidence(cloud, &rivals) {
+        Some((k, margin)) => {
+            (rivals[k], if rivals.len() > 1 { margin } else { plain.map_or(0.0, |p| p.1) })
+        }
+        None => (best(cloud, Family::Superellipsoid), 0.0),
     }
-    let evidence = evidence(cloud, &rivals);
+}
+
+/// True when deviations of neighbours go together: the body has not the points' shape.
+fn is_misfit(cloud: &Normalised, h: &Hypothesis) -> bool {
+    const PROBED: usize = 300;
+    if h.mixture.scale < EXACT {
+        return false;
+    }
+    let deviations = distances(&h.parameters, cloud.points.iter().copied());
+    let near = 3.0 * h.mixture.scale;
+    let on: Vec<(Vector, f64)> = cloud
+        .points
+        .iter()
+        .zip(deviations)
+        .filter(|(_, d)| d.abs() < near)
+        .map(|(p, d)| (*p, d))
+        .collect();
+    let (mut product, mut square) = (0.0, 0.0);
+    for (p, d) in on.iter().step_by(on.len().div_ceil(PROBED).max(1)) {
+        let apart = |q: &(Vector, f64)| (q.0 - p).norm_squared();
+        let others = on.iter().filter(|q| apart(q) > 0.0);
+        if let Some((_, other)) = others.min_by(|a, b| apart(a).total_cmp(&apart(b))) {
+            product += d * other;
+            square += d * d;
+        }
+    }
+    product > CORRELATED * square
+}
+
+/// The hypothesis with the most evidence and its margin over the next.
+fn by_evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Option<(usize, f64)> {
+    let evidence = evidence(cloud, rivals);
     let mut order: Vec<usize> = (0..rivals.len()).collect();
     order.sort_by(|a, b| evidence[*b].total_cmp(&evidence[*a]));
-    match order[..] {
-        [first, second, ..] => (rivals.swap_remove(first), evidence[first] - evidence[second]),
-        [only] => (rivals.swap_remove(only), 0.0),
-        [] => (best(cloud, Family::Superellipsoid), 0.0),
-    }
+    let first = *order.first()?;
+    Some((first, order.get(1).map_or(0.0, |second| evidence[first] - evidence[*second])))
 }
 
 /// Logarithm of the evidence of each hypothesis, up to a common constant: the likelihood of all points under the same
@@ -85,6 +131,11 @@ fn ellipsoid_or_toroid(cloud: &Normalised) -> (Hypothesis, f64) {
         return (ellipsoid, 0.0);
     }
     let toroid = best(cloud, Family::Supertoroid);
+    if cloud.effort == Effort::Thorough && matches!(cloud.terms.sight, Sight::AllAround { .. }) {
+        // all of the surface is there to say whether there is a hole
+        let rivals = [ellipsoid, toroid];
+        return by_evidence(cloud, &rivals).map_or((ellipsoid, 0.0), |(k, m)| (rivals[k], m));
+    }
     let mut margin = toroid_margin(&ellipsoid, &toroid, cloud.fine.len());
     let poor = |h: &Hypothesis| h.mixture.scale > 0.99 * h.mixture.law.largest_scale();
     if poor(&ellipsoid) && poor(&toroid) {
