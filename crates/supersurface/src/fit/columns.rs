@@ -103,11 +103,6 @@ impl Evaluation {
         self.outwards(i).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
     }
 
-    /// The way from the surface to a point, to first order; short, so that no step throws a point away.
-    pub(super) fn step(&self, i: usize) -> Vector {
-        self.normal(i) * self.distances[i].clamp(-1.0, 1.0)
-    }
-
     /// The derivatives at one point.
     pub(super) fn row(&self, s: &Parameters, i: usize) -> Row {
         std::array::from_fn(|k| if s.family.has(k) { self.rows[k][i] } else { 0.0 })

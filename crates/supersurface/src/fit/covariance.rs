@@ -9,9 +9,9 @@ use nalgebra::DMatrix;
 
 use super::Effort;
 use super::columns::Evaluation;
-use super::near::Feet;
 use super::parameters::{EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
+use super::sights::Sights;
 use super::solver::Hypothesis;
 use super::terms::Sight;
 
@@ -64,7 +64,7 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let mut at = Evaluation::default();
     match (cloud.terms.viewpoint, cloud.terms.sight, cloud.effort) {
         (Some(viewpoint), Sight::OneSide, Effort::Thorough) => {
-            Feet::default().fill(s, &cloud.fine, &viewpoint, &mut at);
+            Sights::default().fill(s, &cloud.fine, &viewpoint, &mut at);
         }
         _ => at.fill(s, &cloud.fine),
     }

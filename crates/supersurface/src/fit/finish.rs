@@ -38,8 +38,8 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         if cloud.effort == Effort::Quick {
             return best;
         }
-        let near = Schedule { near: true, ..schedule(10, RAYS, best.mixture.scale) };
-        return refine(&best, &cloud.fine, &cloud.terms, &near, work);
+        let last = Schedule { along_rays: true, ..schedule(10, RAYS, best.mixture.scale) };
+        return refine(&best, &cloud.fine, &cloud.terms, &last, work);
     };
     let mut rivals = vec![best];
     let close = WORSE * cloud.middle.len() as f64;

@@ -33,7 +33,6 @@ mod free_space;
 pub mod generic;
 mod judge;
 mod kernel;
-mod near;
 mod noise;
 mod parameters;
 mod patches;
@@ -43,6 +42,7 @@ mod pull_back;
 mod rays;
 mod samples;
 mod search;
+mod sights;
 mod smeared;
 mod solver;
 mod start;
@@ -98,7 +98,7 @@ pub struct FitOptions {
 pub enum Effort {
     /// A few milliseconds: for the frames of a camera with many objects.
     Quick,
-    /// Ten milliseconds or so: more starts and points, and a last stage with distances near to the Euclidean.
+    /// Ten milliseconds or so: more starts and points, and for views a last stage along the rays.
     #[default]
     Thorough,
 }

@@ -125,7 +125,7 @@ pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
         decay: 0.7,
         floor: NOISE_FLOOR,
         leash: f64::INFINITY,
-        near: false,
+        along_rays: false,
         tolerance: 0.02,
     }
 }

@@ -1,10 +1,10 @@
 //! Damped least squares on the mixture's weights, with the noise annealed and re-estimated in each round.
 
 use super::columns::{Evaluation, Sample};
-use super::near::Feet;
 use super::noise::Mixture;
 use super::parameters::{COUNT, Family, Parameters, Row};
 use super::rays::Rays;
+use super::sights::Sights;
 use super::terms::{Beside, Normal, Terms};
 use crate::Vector;
 use crate::numeric::lanes::{Job, dispatch, dot};
@@ -47,8 +47,8 @@ pub(super) struct Schedule {
     pub(super) leash: f64,
     /// Lines of sight that are looked at.
     pub(super) rays: usize,
-    /// By near-Euclidean distances over obliquity, where a viewpoint is known.
-    pub(super) near: bool,
+    /// By residuals along the rays, where a viewpoint is known.
+    pub(super) along_rays: bool,
     /// A round that gains less than this many nats ends the search.
     pub(super) tolerance: f64,
 }
@@ -81,7 +81,7 @@ pub(super) struct Workspace {
     weighted: Vec<f64>,
     intrusions: Vec<Vector>,
     search: Rays,
-    feet: Feet,
+    sights: Sights,
 }
 
 impl Workspace {
@@ -113,8 +113,8 @@ impl Workspace {
 
     /// Evaluates the points for a body that is tried.
     fn evaluate(&mut self, s: &Parameters, points: &Sample, terms: &Terms, schedule: &Schedule) {
-        match terms.viewpoint.filter(|_| schedule.near) {
-            Some(viewpoint) => self.feet.fill(s, points, &viewpoint, &mut self.trial),
+        match terms.viewpoint.filter(|_| schedule.along_rays) {
+            Some(viewpoint) => self.sights.fill(s, points, &viewpoint, &mut self.trial),
             None => self.trial.fill(s, points),
         }
     }
