@@ -25,6 +25,8 @@ pub(super) const BLURRED: f64 = 0.02;
 /// Most hypotheses that are compared in the end, and by how many nats a point the last may be worse at first.
 const COMPARED: usize = 4;
 const WORSE: f64 = 0.3;
+/// The same for single views.
+const SIGHTED: usize = 2;
 /// Points by which bodies are compared.
 pub(super) const COMPARING: usize = 400;
 
@@ -34,16 +36,22 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
     let best = to_the_end(&pool[0], &cloud.terms, work);
+    let close = WORSE * cloud.middle.len() as f64;
+    let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
     let Sight::AllAround { volume } = cloud.terms.sight else {
         if cloud.effort == Effort::Quick {
             return best;
         }
-        let last = Schedule { along_rays: true, ..schedule(10, RAYS, best.mixture.scale) };
-        return refine(&best, &cloud.fine, &cloud.terms, &last, work);
+        let others: Vec<Hypothesis> =
+            near.take(SIGHTED - 1).map(|h| to_the_end(h, &cloud.terms, work)).collect();
+        let along = others.iter().chain([&best]).map(|h| {
+            let last = Schedule { along_rays: true, ..schedule(10, RAYS, h.mixture.scale) };
+            refine(h, &cloud.fine, &cloud.terms, &last, work)
+        });
+        return cheapest(along.collect()).unwrap_or(best);
     };
     let mut rivals = vec![best];
-    let close = WORSE * cloud.middle.len() as f64;
-    rivals.extend(pool[1..].iter().filter(|h| h.cost - pool[0].cost < close).take(COMPARED - 1));
+    rivals.extend(near.take(COMPARED - 1));
     if !best.parameters.family.is_deformed() && coverage(&best, &cloud.middle) < COVERED {
         let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
         let refined = rivals.iter().map(|h| to_the_end(h, &terms, work));
