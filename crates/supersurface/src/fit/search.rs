@@ -13,6 +13,8 @@ use super::terms::{Sight, Terms};
 
 /// Lines of sight that are looked at beside the middle set of points.
 const MIDDLE_RAYS: usize = 24;
+/// The same beside the coarse set, for rings.
+const COARSE_RAYS: usize = 16;
 /// How many starts of a single view are ranked, and how many of all are refined.
 const SHORTLIST: usize = 8;
 const KEPT: usize = 4;
@@ -55,17 +57,22 @@ fn search(
     work: &mut Workspace,
 ) {
     let terms = &cloud.terms;
-    let mut ranked: Vec<Hypothesis> =
-        starts(frames, terms, family).iter().map(|s| begin(s, terms)).collect();
     // among outliers a sketch misleads: there all starts are ranked at once
     let sketch = terms.sight == Sight::OneSide && cloud.effort == Effort::Quick;
+    let holes: &[f64] =
+        if terms.sight == Sight::OneSide && !sketch { &[1.0, 0.45] } else { &[1.0] };
+    let starts = starts(frames, terms, family, holes);
+    let mut ranked: Vec<Hypothesis> = starts.iter().map(|s| begin(s, terms)).collect();
     let rounds: &[(&Sample, usize, usize)] = match sketch {
         true => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
         false => &[(&cloud.coarse, 10, KEPT)],
     };
+    // a ring hides its own far wall, which only rays can tell
+    let rays = if family.is_ring() && !sketch { COARSE_RAYS } else { 0 };
     for &(points, rounds, kept) in rounds {
         for h in &mut ranked {
-            *h = refine(h, points, terms, &coarse_schedule(h, rounds), work);
+            let schedule = coarse_schedule(h, rounds, rays);
+            *h = refine(h, points, terms, &schedule, work);
         }
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         ranked.dedup_by(|b, a| is_same(a, b));
@@ -111,10 +118,10 @@ fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
 
 /// The scale of the first rounds is tied to the start's own body, so that a small body among outliers is not
 /// swallowed by a wide kernel; a body that has settled starts from its noise.
-fn coarse_schedule(h: &Hypothesis, rounds: usize) -> Schedule {
+fn coarse_schedule(h: &Hypothesis, rounds: usize, rays: usize) -> Schedule {
     let size = h.parameters.half_extents().iter().sum::<f64>() / 3.0;
     let scale = if h.cost < f64::MAX { h.mixture.scale.min(0.04 * size) } else { 0.12 * size };
-    Schedule { leash: 1.5, ..schedule(rounds, 0, scale) }
+    Schedule { leash: 1.5, ..schedule(rounds, rays, scale) }
 }
 
 pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {

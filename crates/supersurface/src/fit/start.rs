@@ -27,14 +27,19 @@ const LEAST_PATCHES: usize = 8;
 /// Two frames whose axes agree within this cosine are one.
 const SAME_AXIS: f64 = 0.985;
 
-/// All starts of a family in the frames of a cloud.
-pub(super) fn starts(frames: &[Frame], terms: &Terms, family: Family) -> Vec<Parameters> {
+/// All starts of a family in the frames of a cloud; rings with these shares of the widest hole.
+pub(super) fn starts(
+    frames: &[Frame],
+    terms: &Terms,
+    family: Family,
+    holes: &[f64],
+) -> Vec<Parameters> {
     let mut out = Vec::new();
     for frame in frames {
         let extents = Extents::of(frame, terms);
         let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
         for depth in depths {
-            extents.completed(*depth).bodies(frame, family, &mut out);
+            extents.completed(*depth).bodies(frame, family, holes, &mut out);
         }
     }
     out
@@ -184,7 +189,7 @@ impl Extents {
         self
     }
 
-    fn bodies(&self, frame: &Frame, family: Family, out: &mut Vec<Parameters>) {
+    fn bodies(&self, frame: &Frame, family: Family, holes: &[f64], out: &mut Vec<Parameters>) {
         let middle = Vector::from_fn(|k, _| 0.5 * (self.low[k] + self.high[k]));
         let half: [f64; 3] =
             std::array::from_fn(|k| (0.5 * (self.high[k] - self.low[k])).max(0.03));
@@ -202,7 +207,7 @@ impl Extents {
                 ..Parameters::ball(family)
             };
             if family.is_ring() {
-                out.push(ringed(&start, axes, &frame.points));
+                out.extend(holes.iter().map(|hole| ringed(&start, axes, &frame.points, *hole)));
                 continue;
             }
             let square = axes[0].max(axes[1]) < 1.5 * axes[0].min(axes[1]);
@@ -239,8 +244,8 @@ fn turned(start: &Parameters, axes: [f64; 3]) -> Parameters {
     }
 }
 
-/// The toroid in the same box whose hole reaches to a low quantile of the planar radius.
-fn ringed(start: &Parameters, axes: [f64; 3], points: &[Vector]) -> Parameters {
+/// The toroid in the same box whose hole is this share of a low quantile of the planar radius.
+fn ringed(start: &Parameters, axes: [f64; 3], points: &[Vector], share: f64) -> Parameters {
     let mut radii: Vec<f64> = points
         .iter()
         .map(|p| {
@@ -248,7 +253,7 @@ fn ringed(start: &Parameters, axes: [f64; 3], points: &[Vector]) -> Parameters {
             (q.x / axes[0]).hypot(q.y / axes[1])
         })
         .collect();
-    let hole = quantile(&mut radii, 2.0 * TAIL).clamp(0.1, 0.8);
+    let hole = (share * quantile(&mut radii, 2.0 * TAIL)).clamp(0.1, 0.8);
     let ring = ((1.0 + hole) / (1.0 - hole)).clamp(RINGS[0], RINGS[1]);
     let scale = 1.0 / (1.0 + ring);
     Parameters {
