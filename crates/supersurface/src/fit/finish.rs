@@ -20,7 +20,7 @@ const ROUNDS: usize = 15;
 /// Share of the surface that must have points near it for the points to show all of it.
 pub(super) const COVERED: f64 = 0.9;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
-const BIASED: f64 = 0.01;
+const BIASED: f64 = 0.018;
 pub(super) const BLURRED: f64 = 0.02;
 /// Most hypotheses that are compared in the end, and by how many nats a point the last may be worse at first.
 const COMPARED: usize = 4;

@@ -18,6 +18,10 @@ const COARSE_RAYS: usize = 16;
 /// How many starts of a single view are ranked, and how many of all are refined.
 const SHORTLIST: usize = 8;
 const KEPT: usize = 4;
+/// Starts that are kept though half of them are fewer.
+const LEAST_KEPT: usize = 6;
+/// Noise, in normalised lengths, below which a body is the one that was looked for.
+const EXACT: f64 = 1e-3;
 /// How often the near-symmetries are tried (for both efforts).
 const SWITCHES: [usize; 2] = [1, 2];
 /// Share of points that a body may leave out without doubt.
@@ -63,9 +67,12 @@ fn search(
         if terms.sight == Sight::OneSide && !sketch { &[1.0, 0.45] } else { &[1.0] };
     let starts = starts(frames, terms, family, holes);
     let mut ranked: Vec<Hypothesis> = starts.iter().map(|s| begin(s, terms)).collect();
-    let rounds: &[(&Sample, usize, usize)] = match sketch {
-        true => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
-        false => &[(&cloud.coarse, 10, KEPT)],
+    let half = starts.len().div_ceil(2).max(LEAST_KEPT);
+    let rounds: &[(&Sample, usize, usize)] = match (terms.sight, sketch) {
+        (Sight::OneSide, true) => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
+        (Sight::OneSide, false) => &[(&cloud.coarse, 10, KEPT)],
+        // a start that is far behind after a few rounds does not catch up
+        _ => &[(&cloud.coarse, 4, half), (&cloud.coarse, 6, KEPT)],
     };
     // a ring hides its own far wall, which only rays can tell
     let rays = if family.is_ring() && !sketch { COARSE_RAYS } else { 0 };
@@ -81,6 +88,9 @@ fn search(
     for h in &ranked {
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
         add(pool, refine(h, &cloud.middle, terms, &schedule, work));
+        if pool.first().is_some_and(is_exact) {
+            return;
+        }
     }
     for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
@@ -94,6 +104,11 @@ fn search(
             break;
         }
     }
+}
+
+/// True for a body on which all points lie.
+fn is_exact(h: &Hypothesis) -> bool {
+    h.mixture.scale < EXACT && h.mixture.outliers < 0.01
 }
 
 /// True for two ways to the same body.
