@@ -36,9 +36,8 @@ pub(super) fn without_bias(
     let s = &h.parameters;
     let back = |found: f64, drawn: f64| (drawn - found).clamp(-MOST, MOST);
     let mut step: Row = [0.0; _];
-    for k in 0..3 {
-        step[k] = back(again.log_axes[k], s.log_axes[k]);
-    }
+    let axes = again.log_axes.iter().zip(&s.log_axes);
+    step.iter_mut().zip(axes).for_each(|(step, (found, drawn))| *step = back(*found, *drawn));
     step[RING] = back(again.ring, s.ring);
     for k in 0..2 {
         step[EXPONENT + k] = back(again.exponents[k], s.exponents[k]);
