@@ -326,7 +326,7 @@ fn solid_of(text: &str) -> Posed<Solid> {
 fn apart(from: &Posed<Solid>, to: &Posed<Solid>) -> f64 {
     let sampler = SurfaceSampler::new(from.shape(), None).unwrap();
     let finder = NearestFinder::of_surface(to.shape());
-    let points = sampler.points(100, 1);
+    let points = sampler.points(50, 1);
     let squares = points.iter().map(|s| {
         let p: Point = to.pose().inverse() * (from.pose() * s.point);
         finder.find(&p).map_or(0.0, |found| found.distance).powi(2)
