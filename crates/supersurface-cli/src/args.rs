@@ -12,7 +12,8 @@ use crate::threads::MOST;
 
 /// Recovers the objects of a depth camera's cloud as superellipsoids and supertoroids, and plans grasps.
 ///
-/// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 no table or nothing on it, 5 output failed.
+/// Exit status: 0 done, 2 wrong use, 3 unreadable input, 4 nothing found (no table, nothing on it, no
+/// surface), 5 output failed.
 #[derive(Debug, Parser)]
 #[command(name = "supersurface", version, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -26,7 +27,7 @@ pub(crate) enum Command {
     Grasp(Box<GraspArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
-    /// One surface for a cloud of one object.
+    /// The surface of each cloud of one object.
     Fit(Box<FitArgs>),
     /// Draws the figures that explain the family.
     Gallery(GalleryArgs),

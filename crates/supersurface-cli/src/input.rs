@@ -65,7 +65,7 @@ pub(crate) fn units(cloud: &PointCloud, said: Units) -> Option<String> {
 }
 
 /// Whether a place lies within the box of a cloud.
-fn surrounds(cloud: &PointCloud, place: &Point) -> bool {
+pub(crate) fn surrounds(cloud: &PointCloud, place: &Point) -> bool {
     let finite = cloud.points.iter().filter(|p| p.coords.iter().all(|v| v.is_finite()));
     let bounds = finite.fold(None, |b: Option<(Point, Point)>, p| {
         Some(b.map_or((*p, *p), |(low, high)| (low.inf(p), high.sup(p))))
@@ -116,6 +116,7 @@ fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
     Ok(Some(DepthCamera { size: None, focal, centre, distortion, depth_scale }))
 }
 
+/// A place, or `None` for "none".
 pub(crate) fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
     if text == "none" {
         return Ok(None);
@@ -125,7 +126,7 @@ pub(crate) fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
         Some([x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) => {
             Ok(Some(Point::new(*x, *y, *z)))
         }
-        _ => Err(Failure::usage(format!("--viewpoint {text:?}: X,Y,Z in metres, or none"))),
+        _ => Err(Failure::usage(format!("--viewpoint {text:?}: X,Y,Z, or none"))),
     }
 }
 

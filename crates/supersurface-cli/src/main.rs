@@ -8,6 +8,7 @@ mod gallery;
 mod grasp;
 mod input;
 mod outputs;
+mod places;
 mod progress;
 mod shape;
 mod show;

@@ -1,6 +1,6 @@
 //! One run of the pipeline and everything that it leaves: table or JSON, labels, grasps, picture.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
@@ -13,6 +13,7 @@ use supersurface_io::{
 
 use crate::args::{HowArgs, OutputArgs};
 use crate::exit::{Failure, print};
+use crate::places::Places;
 use crate::progress::Progress;
 use crate::{show, terminal, threads};
 
@@ -58,20 +59,12 @@ impl Run<'_> {
     fn check_files(&self) -> Result<(), Failure> {
         let built_in = BUILT_IN_GRIPPERS.iter().any(|(name, _)| *name == self.how.gripper);
         let gripper = (!built_in).then_some(Path::new(&self.how.gripper));
-        let read = self.inputs.iter().copied().filter(|p| *p != Path::new("-")).chain(gripper);
-        let mut taken: Vec<PathBuf> = read.map(place).collect();
+        let mut places = Places::read(self.inputs.iter().copied().chain(gripper));
         let OutputArgs { labels, grasps, png, .. } = self.output;
         for (option, file) in [("--labels", labels), ("--grasps", grasps), ("--png", png)] {
-            let Some(file) = file else { continue };
-            let place = place(file);
-            // devices and pipes may take more than one
-            if taken.contains(&place) && (place.is_file() || !place.exists()) {
-                let file = file.display();
-                let problem =
-                    format!("{option} {file}: the file is read, or another output goes there");
-                return Err(Failure::usage(problem));
+            if let Some(file) = file {
+                places.take(option, file)?;
             }
-            taken.push(place);
         }
         Ok(())
     }
@@ -177,13 +170,6 @@ impl Run<'_> {
         let left = left.into_iter().map(|written| written.map_err(Failure::output));
         left.chain([print(&text)]).filter_map(Result::err).collect()
     }
-}
-
-/// Where a path leads, through all links; its file may not be there yet.
-fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let new = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
-    path.canonicalize().ok().or_else(new).unwrap_or_else(|| path.to_owned())
 }
 
 /// The frame of a grasp file: that of the cloud, or the one into which the camera's pose leads.

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use supersurface::pipeline::Stage;
 
+use crate::exit::{Failure, print};
+
 /// Announces stages and keeps their times.
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -54,6 +56,16 @@ impl Progress {
             // a closed standard error is no reason to stop
             let _ = std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes());
         });
+    }
+
+    /// How far the stage is.
+    pub(crate) fn say(&self, message: String) {
+        self.bar.set_message(message);
+    }
+
+    /// Prints a result without a torn spinner in it.
+    pub(crate) fn print(&self, text: &str) -> Result<(), Failure> {
+        self.bar.suspend(|| print(text))
     }
 
     fn end(&mut self) {

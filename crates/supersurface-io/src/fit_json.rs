@@ -3,9 +3,12 @@
 //! Lengths are metres, angles radians, quaternions `wxyz`; the pose is in the frame of the cloud.
 
 use serde::Serialize;
-use supersurface::fit::{Covariance, Fit, FitError, Stopped};
+use supersurface::fit::{Covariance, Fit, Stopped};
 
 use crate::surface_row::SurfaceRow;
+
+/// What the field `format` says.
+pub(crate) const FORMAT: &str = "supersurface-fit";
 
 /// What a fit says beside the result.
 #[derive(Clone, Copy, Debug)]
@@ -22,24 +25,15 @@ pub struct FitHead<'a> {
     pub warnings: &'a [String],
 }
 
-/// The JSON text of a fit, or of why there is none.
-pub fn fit_json(result: Result<&Fit, &FitError>, head: &FitHead<'_>) -> String {
-    let fit = result.ok();
-    let file = File {
-        format: "supersurface-fit",
-        version: 1,
-        source: head.source,
-        points: head.points,
-        status: if fit.is_some() { "ok" } else { "failed" },
-        error: result.err().map(ToString::to_string),
-        surface: fit.map(|f| SurfaceRow::new(&f.surface)),
-        quality: fit.map(QualityRow::new),
-        warnings: head.warnings,
-        cpu_s: head.cpu_seconds,
-        time_s: head.seconds,
-    };
+/// The JSON text of a fit, or of why there is none, over many lines.
+pub fn fit_json(result: Result<&Fit, &str>, head: &FitHead<'_>) -> String {
     // plain structs of numbers and strings: serialisation has nothing to fail on
-    serde_json::to_string_pretty(&file).unwrap_or_default()
+    serde_json::to_string_pretty(&File::new(result, head)).unwrap_or_default()
+}
+
+/// The same in one line, for files of many fits.
+pub fn fit_json_line(result: Result<&Fit, &str>, head: &FitHead<'_>) -> String {
+    serde_json::to_string(&File::new(result, head)).unwrap_or_default()
 }
 
 #[derive(Serialize)]
@@ -50,13 +44,32 @@ struct File<'a> {
     points: usize,
     status: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<String>,
+    error: Option<&'a str>,
     surface: Option<SurfaceRow>,
     #[serde(flatten)]
     quality: Option<QualityRow>,
     warnings: &'a [String],
     cpu_s: f64,
     time_s: f64,
+}
+
+impl<'a> File<'a> {
+    fn new(result: Result<&Fit, &'a str>, head: &FitHead<'a>) -> Self {
+        let fit = result.ok();
+        Self {
+            format: FORMAT,
+            version: 1,
+            source: head.source,
+            points: head.points,
+            status: if fit.is_some() { "ok" } else { "failed" },
+            error: result.err(),
+            surface: fit.map(|f| SurfaceRow::new(&f.surface)),
+            quality: fit.map(QualityRow::new),
+            warnings: head.warnings,
+            cpu_s: head.cpu_seconds,
+            time_s: head.seconds,
+        }
+    }
 }
 
 #[derive(Serialize)]

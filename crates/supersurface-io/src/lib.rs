@@ -9,6 +9,7 @@
 //! | shape (JSON) | in | [`read_shape`] |
 //! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
+//! | fit (JSON) | out, in as a shape | [`fit_json`], [`fit_json_line`], [`read_shape`] |
 //! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
@@ -46,7 +47,7 @@ pub use camera_json::{DepthCamera, read_camera};
 pub use cloud_files::{check_points_file, write_points};
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
-pub use fit_json::{FitHead, fit_json};
+pub use fit_json::{FitHead, fit_json, fit_json_line};
 pub use grasps_json::write_grasps;
 pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
 pub use mesh_files::write_mesh;

@@ -13,7 +13,11 @@ pub(crate) struct PoseRow {
 
 impl PoseRow {
     pub(crate) fn new(pose: &Pose) -> Self {
-        let q = pose.rotation;
+        // of the two quaternions of a rotation the one with w >= 0
+        let q = match pose.rotation.w < 0.0 {
+            true => -pose.rotation.into_inner(),
+            false => pose.rotation.into_inner(),
+        };
         Self { position: pose.translation.vector.into(), orientation_wxyz: [q.w, q.i, q.j, q.k] }
     }
 }

@@ -2,6 +2,7 @@
 
 mod degenerate;
 mod exit_status;
+mod fit;
 mod inputs;
 mod outputs;
 mod shapes;

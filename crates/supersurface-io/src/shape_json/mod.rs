@@ -13,8 +13,9 @@ use supersurface::shape::{ExtendedSuperellipsoid, Implicit, InvalidShape, Posed,
 use supersurface::surface::Solid;
 use supersurface::{Pose, Vector};
 
-use self::rows::{AssemblyRow, DeformationRow, Leaf, ShapeRow, TreeRow};
+use self::rows::{AssemblyRow, DeformationRow, Leaf, NamedDeformations, ShapeRow, TreeRow};
 use crate::error::{Fault, ReadError};
+use crate::fit_json;
 use crate::read::{BOM, load, shown_name};
 
 /// What a shape file holds.
@@ -51,7 +52,7 @@ pub fn read_shape(file: &Path) -> Result<Model, ReadError> {
     parse_shape(&shown_name(file), &load(file)?)
 }
 
-/// A shape from the bytes of a JSON file; the name is for errors.
+/// A shape from the bytes of a JSON file, or the surface of a whole fit; the name is for errors.
 ///
 /// ```
 /// use supersurface_io::{Model, parse_shape};
@@ -68,7 +69,22 @@ pub fn parse_shape(name: &str, bytes: &[u8]) -> Result<Model, ReadError> {
     let bytes = bytes.strip_prefix(BOM).unwrap_or(bytes);
     let value: Value = serde_json::from_slice(bytes)
         .map_err(|e| fault(Fault::new(format!("line {}", e.line()), e.to_string())))?;
-    model(value, "shape").map_err(fault)
+    let (value, at) = surface_of_fit(value).map_err(fault)?;
+    model(value, at).map_err(fault)
+}
+
+/// The surface where the file is a whole fit, else what is there.
+fn surface_of_fit(mut value: Value) -> Result<(Value, &'static str), Fault> {
+    if value.get("format").is_none_or(|f| f != fit_json::FORMAT) {
+        return Ok((value, "shape"));
+    }
+    match value.get_mut("surface").map(Value::take) {
+        None | Some(Value::Null) => {
+            let why = value.get("error").and_then(Value::as_str).unwrap_or("it has no surface");
+            Err(Fault::new("surface", format!("this fit failed: {why}")))
+        }
+        Some(surface) => Ok((surface, "surface")),
+    }
 }
 
 /// A shape; `at` says where in the file it stands.
@@ -79,8 +95,8 @@ fn model(value: Value, at: &str) -> Result<Model, Fault> {
     let invalid = |e: InvalidShape| Fault::new(at, e.to_string());
     // what every shape may have comes out first, so that what is left must be the shape's own
     let pose = pose(&mut fields, at)?;
-    let deformations: Vec<DeformationRow> = match fields.remove("deformations") {
-        Some(list) => row(list, &format!("{at}.deformations"))?,
+    let deformations = match fields.remove("deformations") {
+        Some(value) => deformations(value, &format!("{at}.deformations"))?,
         None => Vec::new(),
     };
     let undeformed = || match deformations.is_empty() {
@@ -94,8 +110,8 @@ fn model(value: Value, at: &str) -> Result<Model, Fault> {
     let name = shape.name();
     match shape.leaf().map_err(invalid)? {
         Leaf::Solid(solid) => {
-            let solid = deformations.iter().enumerate().try_fold(solid, |solid, (i, d)| {
-                d.apply(solid).map_err(|e| Fault::new(format!("{at}.deformations[{i}]"), e))
+            let solid = deformations.iter().try_fold(solid, |solid, (place, d)| {
+                d.apply(solid).map_err(|e| Fault::new(place.clone(), e))
             })?;
             Ok(Model::Solid(Posed::new(solid, pose).map_err(invalid)?))
         }
@@ -129,6 +145,16 @@ fn model(value: Value, at: &str) -> Result<Model, Fault> {
             Ok(Model::Assembly(assembly(parts, &pose, at)?))
         }
     }
+}
+
+/// Deformations with their places: a list in its order, or the object of a fit.
+fn deformations(value: Value, at: &str) -> Result<Vec<(String, DeformationRow)>, Fault> {
+    if value.is_object() {
+        let named = row::<NamedDeformations>(value, at)?.rows();
+        return Ok(named.map(|(name, d)| (format!("{at}.{name}"), d)).collect());
+    }
+    let list: Vec<DeformationRow> = row(value, at)?;
+    Ok(list.into_iter().enumerate().map(|(i, d)| (format!("{at}[{i}]"), d)).collect())
 }
 
 /// A Boolean tree of what has an implicit form.

@@ -175,6 +175,33 @@ impl DeformationRow {
     }
 }
 
+/// The deformations of a fit, by name.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NamedDeformations {
+    taper: Option<[f64; 2]>,
+    twist: Option<f64>,
+    bend: Option<NamedBend>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NamedBend {
+    k: f64,
+    #[serde(default)]
+    alpha: f64,
+}
+
+impl NamedDeformations {
+    /// In the order in which they are done: taper, twist, bend.
+    pub(super) fn rows(self) -> impl Iterator<Item = (&'static str, DeformationRow)> {
+        let bend = |b: NamedBend| DeformationRow::Bend { curvature: b.k, angle: b.alpha };
+        let taper = self.taper.map(|slopes| ("taper", DeformationRow::Taper { slopes }));
+        let twist = self.twist.map(|turns| ("twist", DeformationRow::Twist { turns }));
+        taper.into_iter().chain(twist).chain(self.bend.map(|b| ("bend", bend(b))))
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TreeRow {

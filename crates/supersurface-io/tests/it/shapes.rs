@@ -93,6 +93,35 @@ fn poses_deformations_and_trees_are_applied_in_order() {
 }
 
 #[test]
+fn a_fit_and_its_named_deformations_are_read_as_a_shape() {
+    let surface = |deformations: &str| {
+        format!(
+            r#"{{"type": "superellipsoid", "semi_axes": [0.3, 0.2, 1], "exponents": [0.5, 0.7],
+                "deformations": {deformations}, "position": [0, 0, 5]}}"#
+        )
+    };
+    let listed = surface(
+        r#"[{"type": "taper", "slopes": [0.2, -0.1]}, {"type": "twist", "turns": 0.3},
+            {"type": "bend", "curvature": 0.5, "angle": 0.4}]"#,
+    );
+    // named in any order, done in one
+    let named =
+        surface(r#"{"bend": {"k": 0.5, "alpha": 0.4}, "twist": 0.3, "taper": [0.2, -0.1]}"#);
+    let fit = format!(
+        r#"{{"format": "supersurface-fit", "version": 1, "status": "ok", "surface": {named}, "cpu_s": 1}}"#
+    );
+    let Model::Solid(wanted) = read(&listed) else { panic!("no solid") };
+    for text in [&named, &fit] {
+        let Model::Solid(read) = read(text) else { panic!("no solid") };
+        for p in [[0.1, 0.2, 5.3], [0.25, 0.0, 4.2], [-0.2, 0.05, 5.5]].map(Point::from) {
+            assert_eq!(read.gauge(&p), wanted.gauge(&p));
+        }
+    }
+    let Model::Solid(read) = read(&surface(r#"{"twist": 0.5}"#)) else { panic!("no solid") };
+    assert!(read.contains(&Point::new(0.0, 0.0, 5.9)));
+}
+
+#[test]
 fn an_assembly_is_a_tree_of_named_parts() {
     let part = |name: &str, x: f64| {
         format!(
@@ -130,6 +159,17 @@ fn faults_name_the_file_and_the_place() {
         (with(r#""orientation_wxyz": [0, 0, 0, 0]"#), "length 0"),
         (with(r#""deformations": [{"type": "taper", "slopes": [1, 0]}]"#), "deformations[0]"),
         (with(r#""deformations": [{"type": "melt"}]"#), "melt"),
+        (with(r#""deformations": {"taper": [1, 0]}"#), "shape.deformations.taper"),
+        (with(r#""deformations": {"melt": 1}"#), "melt"),
+        (with(r#""deformations": 1"#), "shape.deformations"),
+        (
+            r#"{"format": "supersurface-fit", "surface": null, "error": "3 finite points"}"#.into(),
+            "this fit failed: 3 finite points",
+        ),
+        (
+            format!(r#"{{"format": "supersurface-fit", "surface": {}}}"#, with(r#""position": 1"#)),
+            "surface.position",
+        ),
         (
             with(r#""deformations": [{"type": "twist", "turns": 1}, {"type": "cavity", "depth": 1}]"#),
             "before any other",

@@ -1,0 +1,149 @@
+//! `supersurface fit`: one surface for each cloud of one object.
+
+mod args;
+mod in_order;
+mod text;
+
+use std::path::Path;
+use std::time::Instant;
+
+use cpu_time::ThreadTime;
+use rayon::prelude::*;
+use supersurface::cloud::PointCloud;
+use supersurface::fit::{Fit, FitError, View, fit};
+use supersurface_io::{
+    FitHead, ReadOptions, fit_json, fit_json_line, read, shown_name, write_text,
+};
+
+pub(crate) use self::args::FitArgs;
+use self::args::Known;
+use self::in_order::{Done, InOrder};
+use self::text::text;
+use crate::exit::Failure;
+use crate::input::{surrounds, units};
+use crate::progress::Progress;
+use crate::threads;
+
+/// One cloud and what came of it.
+struct Fitted {
+    name: String,
+    points: usize,
+    result: Result<Fit, Failure>,
+    cpu_seconds: f64,
+    seconds: f64,
+    warnings: Vec<String>,
+}
+
+/// Fits all clouds; one that fails keeps no other from being fitted.
+pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
+    let known = args.known()?;
+    let files = args.files()?;
+    let count = args.clouds.len();
+    let (pool, fewer) = threads::pool(args.threads)?;
+    // one fit is done before a spinner has turned
+    let mut progress = Progress::new(args.quiet || count == 1);
+    if let Some(warning) = fewer {
+        progress.warn(&warning);
+    }
+    progress.begin("fit", format!("fitting {count} clouds"));
+    let all = InOrder::new(&progress, count);
+    pool.install(|| {
+        // a bridge hands the clouds out in their order, so that results show as early as they can
+        args.clouds.iter().zip(&files).enumerate().par_bridge().for_each(|(i, (cloud, file))| {
+            let fitted = fitted(cloud, args, &known);
+            all.add(i, done(fitted, file.as_deref(), args.json, count > 1));
+        });
+    });
+    let failures = all.failures();
+    progress.finish();
+    let mut failures = failures.into_iter();
+    failures.next().map_or(Ok(()), |first| Err(first.and(failures)))
+}
+
+/// Reads a cloud and fits it.
+fn fitted(file: &Path, args: &FitArgs, known: &Known) -> Fitted {
+    let name = shown_name(file);
+    let read = match read(file, &ReadOptions::default()) {
+        Ok(read) => read,
+        Err(error) => {
+            let result = Err(Failure::input(error));
+            let warnings = Vec::new();
+            return Fitted { name, points: 0, result, cpu_seconds: 0.0, seconds: 0.0, warnings };
+        }
+    };
+    let mut cloud = match args.units.metres() {
+        1.0 => read.cloud,
+        factor => read.cloud.scaled(factor),
+    };
+    cloud.viewpoint = known.viewpoint.filter(|eye| !surrounds(&cloud, eye));
+    let mut warnings = read.warnings;
+    warnings.extend(units(&cloud, args.units));
+    warnings.extend(oddities(&cloud, known));
+    let view = View {
+        viewpoint: cloud.viewpoint,
+        support: known.support,
+        standing: known.support.is_some(),
+        ..View::all_around(&cloud.points)
+    };
+    let (cpu, clock) = (ThreadTime::now(), Instant::now());
+    let result = fit(&view, &known.options);
+    let (cpu_seconds, seconds) = (cpu.elapsed().as_secs_f64(), clock.elapsed().as_secs_f64());
+    let points = cloud.points.len();
+    let told = |e| Failure::nothing(format!("{name}: {e}{}", mend(&e, points)));
+    let result = result.map_err(told);
+    Fitted { name, points, result, cpu_seconds, seconds, warnings }
+}
+
+/// What was said of the clouds and does not suit this one.
+fn oddities(cloud: &PointCloud, known: &Known) -> impl Iterator<Item = String> {
+    let within = known.viewpoint.is_some() && cloud.viewpoint.is_none();
+    let beyond = known.support.is_some_and(|plane| {
+        let below = cloud.points.iter().filter(|p| plane.height(p) < 0.0).count();
+        2 * below > cloud.points.len()
+    });
+    let within = within.then_some(
+        "--viewpoint lies within the object, where no sensor stood: it is taken as seen from all around",
+    );
+    let beyond = beyond.then_some(
+        "--plane: most points lie below it; A,B,C must point towards the object (turn all four signs)",
+    );
+    within.into_iter().chain(beyond).map(str::to_owned)
+}
+
+/// What to do about a failure.
+fn mend(error: &FitError, points: usize) -> String {
+    match error {
+        FitError::TooFewPoints { found, .. } if *found < points => {
+            format!(" (of {points}; the others are not finite)")
+        }
+        FitError::TooFewPoints { .. } => "; add views, or thin the cloud out less".to_owned(),
+        FitError::OnePoint { .. } => "; were coordinates rounded far from the origin?".to_owned(),
+        FitError::Line { .. } => "; were the right columns read as x, y, z?".to_owned(),
+        FitError::NoAgreement { .. } => {
+            "; if they are of several objects, `supersurface grasp` parts them".to_owned()
+        }
+        _ => String::new(),
+    }
+}
+
+/// Writes the JSON of a fit and gives what is to tell.
+fn done(fitted: Fitted, file: Option<&Path>, as_json: bool, several: bool) -> Done {
+    let head = FitHead {
+        source: &fitted.name,
+        points: fitted.points,
+        cpu_seconds: fitted.cpu_seconds,
+        seconds: fitted.seconds,
+        warnings: &fitted.warnings,
+    };
+    let result = fitted.result.as_ref().map_err(Failure::message);
+    let written = file.map_or(Ok(()), |file| write_text(file, &(fit_json(result, &head) + "\n")));
+    let text = match result {
+        _ if as_json && several => fit_json_line(result, &head) + "\n",
+        _ if as_json => fit_json(result, &head) + "\n",
+        Ok(fit) if file.is_none() => text(&fitted.name, fitted.points, fit),
+        _ => String::new(),
+    };
+    let warnings = fitted.warnings.iter().map(|w| format!("{}: {w}", fitted.name)).collect();
+    let failures = [fitted.result.err(), written.map_err(Failure::output).err()];
+    Done { text, warnings, failures: failures.into_iter().flatten().collect() }
+}
