@@ -245,7 +245,8 @@ fn no_file_is_written_over_another() {
 
 #[test]
 fn what_is_said_of_the_view_is_checked() {
-    let (_, paths) = folder("said", &[("tin.xyz", &tin(1e3))]);
+    let tin_text = tin(1e3);
+    let (_, paths) = folder("said", &[("tin.xyz", &tin_text)]);
     let tin = text(&paths[0]);
     for (option, value, wanted) in [
         ("--viewpoint", "1,2", "X,Y,Z"),
@@ -276,6 +277,12 @@ fn what_is_said_of_the_view_is_checked() {
     assert!(told.is_empty(), "{told}");
     assert_eq!(plane("0,0,8,400").0, on);
     assert!(plane("0,0,-1,-50").1.contains("must point towards"));
+    // where a sensor saw nothing it writes its own place
+    let zeros = tin_text + &"0.1 0 9e2\n".repeat(200);
+    let seen = ["fit", "-", "--units", "mm", "--viewpoint", "0.1,0,9e2", "--json"];
+    let ran = run_on(&seen, zeros.as_bytes()).ended(0);
+    assert!(ran.stderr.contains("200 points lie at the viewpoint"), "{}", ran.stderr);
+    assert!(ran.json()["residual"].as_f64().unwrap() < 1e-4, "{}", ran.stdout);
 }
 
 #[test]
