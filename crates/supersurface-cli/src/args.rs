@@ -183,7 +183,7 @@ impl Units {
     }
 }
 
-/// Families that can be asked for.
+/// Families of which grasp tables know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Model {
     /// Chosen by evidence.
@@ -192,15 +192,6 @@ pub(crate) enum Model {
     Superellipsoid,
     /// Ring, roll, rim.
     Supertoroid,
-    /// Cup, cone, wedge.
-    Tapered,
-    /// Banana, handle.
-    Bent,
-    /// Sections that turn.
-    Twisted,
-    /// Horn.
-    #[value(name = "tapered_bent", alias = "tapered-bent")]
-    TaperedBent,
 }
 
 impl Model {
@@ -209,10 +200,6 @@ impl Model {
             Self::Auto => None,
             Self::Superellipsoid => Some(Family::Superellipsoid),
             Self::Supertoroid => Some(Family::Supertoroid),
-            Self::Tapered => Some(Family::Tapered),
-            Self::Bent => Some(Family::Bent),
-            Self::Twisted => Some(Family::Twisted),
-            Self::TaperedBent => Some(Family::TaperedBent),
         }
     }
 }

@@ -3,12 +3,12 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf, is_separator};
 
-use clap::Args;
-use supersurface::fit::FitOptions;
+use clap::{Args, ValueEnum};
+use supersurface::fit::{Family, FitOptions};
 use supersurface::shape::Plane;
 use supersurface::{Point, Vector};
 
-use crate::args::{Model, Units};
+use crate::args::Units;
 use crate::exit::Failure;
 use crate::input::viewpoint;
 use crate::places::Places;
@@ -55,6 +55,40 @@ pub(crate) struct FitArgs {
     pub(super) quiet: bool,
 }
 
+/// Families that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Model {
+    /// Chosen by evidence.
+    Auto,
+    /// Box, cylinder, ellipsoid and what lies between.
+    Superellipsoid,
+    /// Ring, roll, rim.
+    Supertoroid,
+    /// Cup, cone, wedge.
+    Tapered,
+    /// Banana, handle.
+    Bent,
+    /// Sections that turn.
+    Twisted,
+    /// Horn.
+    TaperedBent,
+}
+
+impl Model {
+    const fn options(self) -> FitOptions {
+        FitOptions::only(match self {
+            Self::Auto => return FitOptions::ALL,
+            Self::Superellipsoid => Family::Superellipsoid,
+            Self::Supertoroid => Family::Supertoroid,
+            Self::Tapered => Family::Tapered,
+            Self::Bent => Family::Bent,
+            Self::Twisted => Family::Twisted,
+            Self::TaperedBent => Family::TaperedBent,
+        })
+    }
+}
+
 /// What is known of the clouds, in metres.
 pub(super) struct Known {
     pub(super) viewpoint: Option<Point>,
@@ -82,8 +116,7 @@ impl FitArgs {
                 return Err(Failure::usage(problem));
             }
         };
-        let options = self.model.family().map_or_else(FitOptions::default, FitOptions::only);
-        Ok(Known { viewpoint: seen_from, support, options })
+        Ok(Known { viewpoint: seen_from, support, options: self.model.options() })
     }
 
     /// The file of each cloud's JSON, the folder of which is made; none where none is asked for. No file is read and

@@ -9,7 +9,6 @@ use std::time::Instant;
 
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
-use supersurface::Point;
 use supersurface::cloud::PointCloud;
 use supersurface::fit::{Fit, FitError, View, fit};
 use supersurface_io::{
@@ -76,11 +75,11 @@ fn fitted(file: &Path, args: &FitArgs, known: &Known) -> Fitted {
         1.0 => read.cloud,
         factor => read.cloud.scaled(factor),
     };
-    let left_out = known.viewpoint.map_or(0, |eye| leave_out(&mut cloud, &eye));
     cloud.viewpoint = known.viewpoint.filter(|eye| !surrounds(&cloud, eye));
     let mut warnings = read.warnings;
     warnings.extend(units(&cloud, args.units));
     warnings.extend(oddities(&cloud, known));
+    let left_out = cloud.points.iter().filter(|p| Some(**p) == cloud.viewpoint).count();
     if left_out > 0 {
         let what = "lie at the viewpoint, as sensors write what they did not see";
         warnings.push(format!("{left_out} points {what}: they are left out"));
@@ -98,12 +97,6 @@ fn fitted(file: &Path, args: &FitArgs, known: &Known) -> Fitted {
     let told = |e| Failure::nothing(format!("{name}: {e}{}", mend(&e, points)));
     let result = result.map_err(told);
     Fitted { name, points, result, cpu_seconds, seconds, warnings }
-}
-
-/// Makes points at the viewpoint not finite, and counts them.
-fn leave_out(cloud: &mut PointCloud, eye: &Point) -> usize {
-    let at_eye = cloud.points.iter_mut().filter(|p| *p == eye);
-    at_eye.map(|p| *p = [f64::NAN; 3].into()).count()
 }
 
 /// What was said of the clouds and does not suit this one.

@@ -1,12 +1,13 @@
 //! Which family: by the likelihood of the points and by whether the hole is really seen.
 
 use super::Effort;
+use super::centred::spread;
 use super::columns::{Evaluation, Sample, distances};
-use super::finish::{BLURRED, COMPARING, every};
+use super::finish::{BLURRED, COMPARING};
 use super::parameters::Family;
 use super::prepare::Normalised;
 use super::rays::Rays;
-use super::search::{best, schedule};
+use super::search::{EXACT, best, schedule};
 use super::smeared::smeared_cost;
 use super::solver::{Hypothesis, Workspace, refine};
 use super::start::quantile;
@@ -31,8 +32,6 @@ const PATCH: f64 = 8.0;
 /// Fewer points on the wall of a hole than this show none.
 const LEAST_INNER: usize = 12;
 
-/// Deviations below this, in normalised lengths, are no sign of another shape.
-const EXACT: f64 = 1e-3;
 /// Correlation of neighbouring deviations above which they are no noise.
 const CORRELATED: f64 = 0.15;
 /// A body with more parameters must explain its points by this much less noise: else it has taken outliers in.
@@ -110,7 +109,7 @@ fn evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Vec<f64> {
     let mut work = Workspace::default();
     let cost = |h: &Hypothesis, work: &mut Workspace| match cloud.terms.sight {
         Sight::AllAround { volume } if noise > BLURRED => {
-            let points = every(&cloud.points, COMPARING);
+            let points = spread(&cloud.points, COMPARING);
             let cost = smeared_cost(&h.parameters, &h.mixture, &points, noise, volume);
             cost * cloud.points.len() as f64 / points.len() as f64
         }
@@ -124,7 +123,8 @@ fn evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Vec<f64> {
         .collect()
 }
 
-/// The better of superellipsoid and supertoroid, and its margin in nats.
+/// The better of superellipsoid and supertoroid, and its margin in nats: negative where the likelihood alone speaks for a
+/// ring whose hole is not seen.
 fn ellipsoid_or_toroid(cloud: &Normalised) -> (Hypothesis, f64) {
     let ellipsoid = best(cloud, Family::Superellipsoid);
     if !may_be_hollow(cloud, &ellipsoid) {

@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 
 use super::Effort;
 use super::columns::Evaluation;
-use super::parameters::{EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
+use super::parameters::{COUNT, EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
 use super::sights::Sights;
 use super::solver::Hypothesis;
@@ -38,7 +38,7 @@ impl Covariance {
     }
 }
 
-const NAMES: [&str; 17] = [
+const NAMES: [&str; COUNT] = [
     "a1",
     "a2",
     "a3",

@@ -2,6 +2,7 @@
 
 use super::Effort;
 use super::bias::without_bias;
+use super::centred::spread;
 use super::columns::{Sample, distances};
 use super::parameters::Parameters;
 use super::prepare::Normalised;
@@ -62,7 +63,7 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         return best;
     }
     rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
-    let some: Vec<Vector> = every(&cloud.points, COMPARING);
+    let some: Vec<Vector> = spread(&cloud.points, COMPARING);
     let last = schedule(12, 0, 0.0);
     let corrected = rivals.iter().enumerate().map(|(i, h)| {
         let fitted = if i == 0 { *h } else { to_the_end(h, &cloud.terms, work) };
@@ -75,11 +76,6 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
 
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
     rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
-}
-
-/// About `count` of the points, evenly over their order.
-pub(super) fn every(points: &[Vector], count: usize) -> Vec<Vector> {
-    points.iter().step_by(points.len().div_ceil(count)).copied().collect()
 }
 
 /// Share of the surface that has points near it, in [0, 1].

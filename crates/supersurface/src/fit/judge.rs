@@ -1,12 +1,13 @@
 //! From the best body back to the view: units, every point judged, how sure all is.
 
+use super::centred::is_finite;
 use super::columns::distances;
 use super::covariance::covariance;
 use super::prepare::Normalised;
 use super::solver::Hypothesis;
 use super::start::quantile;
 use super::{Fit, FitError, View};
-use crate::{Point, Vector};
+use crate::Point;
 
 /// A fit with a lesser share of inliers explains nothing.
 const LEAST_SHARE: f64 = 0.1;
@@ -20,12 +21,12 @@ pub(super) fn judge(
 ) -> Result<Fit, FitError> {
     let s = &h.parameters;
     let inward = |p: &Point| (p.coords - cloud.centre) / cloud.scale;
-    let is_finite = |x: &Vector| x.iter().all(|v| v.is_finite());
-    let finite = view.points.iter().map(inward).filter(is_finite);
-    let mut distances = distances(s, finite);
+    let counts = |p: &Point| is_finite(&inward(p)) && Some(*p) != view.viewpoint;
+    let counted = view.points.iter().filter(|p| counts(p)).map(inward);
+    let mut distances = distances(s, counted);
     let mut next = distances.iter();
     let mut judge = |p: &Point| {
-        let d = if is_finite(&inward(p)) { next.next() } else { None };
+        let d = if counts(p) { next.next() } else { None };
         d.map_or(0.0, |d| h.mixture.belongs(*d) as f32)
     };
     let probabilities: Vec<f32> = view.points.iter().map(&mut judge).collect();

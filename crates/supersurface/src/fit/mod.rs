@@ -1,7 +1,7 @@
 //! Floor 7: one supersurface for the points of one object.
 //!
-//! The fit maximises the likelihood of the points' first-order distances under a mixture of a Student-t and
-//! a constant density of outliers, whose scale and share are estimated. It begins from frames that the
+//! The fit maximises the likelihood of the points' first-order distances under a mixture of a Gaussian (on single views
+//! a Student-t) and a constant density of outliers, whose scale and share are estimated. It begins from frames that the
 //! structure of the cloud suggests, ranks them by a coarse search, refines the best, and tries the
 //! near-symmetries of the family. For a single view it adds what else is known: the body stands on its
 //! support, and it does not stick out into space that the camera's rays prove empty.
@@ -25,6 +25,7 @@
 //! the evidence allows, not a measurement.
 
 mod bias;
+mod centred;
 mod choose;
 mod columns;
 mod covariance;
@@ -67,7 +68,8 @@ use crate::surface::Surface;
 pub struct View<'a> {
     /// Points on the object, in metres; rows that are not finite are left out.
     pub points: &'a [Point],
-    /// Where the sensor stood; `None` when the object was seen from all around.
+    /// Where the sensor stood; `None` when the object was seen from all around. A place nearer to the points' mean than
+    /// 1.8 times their root mean square distance from it is no sensor's and counts as `None`; points at it are left out.
     pub viewpoint: Option<Point>,
     /// The plane that bounds the object from below, its normal towards the object.
     pub support: Option<Plane>,
@@ -104,6 +106,9 @@ pub enum Effort {
 }
 
 impl FitOptions {
+    /// Every family.
+    pub const ALL: Self = Self { families: &Family::ALL, effort: Effort::Thorough };
+
     /// Superellipsoids and supertoroids: what grasp tables know.
     pub const UNDEFORMED: Self =
         Self { families: &[Family::Superellipsoid, Family::Supertoroid], effort: Effort::Thorough };
@@ -121,7 +126,7 @@ impl FitOptions {
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { families: &Family::ALL, effort: Effort::Thorough }
+        Self::ALL
     }
 }
 
@@ -133,18 +138,20 @@ pub struct Fit {
     pub family: Family,
     /// The shape in the frame of the points.
     pub surface: Posed<Surface>,
-    /// Scale of the inliers' scatter about the surface (of a Student-t with 3 degrees of freedom), in
-    /// metres.
+    /// Scale of the inliers' scatter about the surface in metres: the standard deviation of a Gaussian, or on a single view
+    /// the scale of a Student-t with 3 degrees of freedom, with [`Effort::Thorough`] along the lines of sight.
     pub noise: f64,
     /// Median of the absolute first-order distances of all points, in metres.
     pub residual: f64,
     /// Which of the view's points belong to the surface (probability over one half); false for points that
-    /// are not finite.
+    /// are not finite or lie at the viewpoint.
     pub inliers: Vec<bool>,
-    /// Probability of each of the view's points to belong to the surface, in [0, 1]; 0 for those that are not finite.
+    /// Probability of each of the view's points to belong to the surface, in [0, 1]; 0 for those that do not
+    /// count.
     pub probabilities: Vec<f32>,
     /// Evidence for the chosen family against the next best, in nats, after the price of parameters; 0 when one
-    /// family was asked for or no other was worth a trial.
+    /// family was asked for or no other was worth a trial, negative on a view where the likelihood alone speaks for a ring
+    /// whose hole is not seen.
     pub margin: f64,
     /// How sure the parameters are; `None` where the points leave that open.
     pub covariance: Option<Covariance>,

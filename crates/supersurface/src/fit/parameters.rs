@@ -106,7 +106,8 @@ impl Family {
         matches!(self, Self::Bent | Self::TaperedBent)
     }
 
-    pub(super) const fn is_deformed(self) -> bool {
+    /// True for what a taper, a twist or a bend makes of a superellipsoid.
+    pub const fn is_deformed(self) -> bool {
         self.is_tapered() || self.is_twisted() || self.is_bent()
     }
 

@@ -1,12 +1,13 @@
-//! A view made ready: checked, with zero mean and unit root mean square, thinned, with frames to begin in.
+//! A view made ready: centred, thinned, with all that is known beside the points and frames to begin in.
 
+use super::centred::{Centred, spread};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
 use super::start::{Frame, frames, quantile};
 use super::terms::{Sight, Support, Terms};
 use super::{Effort, FitError, View};
-use crate::Vector;
+use crate::{Point, Vector};
 
 /// Fewer points than this determine no surface.
 const LEAST_POINTS: usize = 12;
@@ -37,44 +38,17 @@ pub(super) struct Normalised {
     pub(super) frames: Vec<Frame>,
     pub(super) terms: Terms,
     pub(super) effort: Effort,
-    /// Finite points in the view.
+    /// Points that count.
     pub(super) total: usize,
 }
 
 impl Normalised {
     pub(super) fn new(view: &View<'_>, effort: Effort) -> Result<Self, FitError> {
-        let points: Vec<Vector> = view
-            .points
-            .iter()
-            .map(|p| p.coords)
-            .filter(|p| p.iter().all(|v| v.is_finite()))
-            .collect();
-        let found = points.len();
-        if found < LEAST_POINTS {
-            return Err(FitError::TooFewPoints { found, needed: LEAST_POINTS });
-        }
-        // around the first point, so that far coordinates do not cancel, and by the largest, so that squares
-        // do not overflow
-        let origin = points[0];
-        let reach = points.iter().map(|p| (p - origin).amax()).fold(0.0, f64::max);
-        let magnitude = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
-        if reach.is_nan() || reach <= 1e-12 * magnitude || reach.is_infinite() {
-            return Err(FitError::OnePoint { points: found });
-        }
-        let n = found as f64;
-        let mean: Vector = points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n;
-        let centre = origin + mean * reach;
-        let square = points.iter().map(|p| ((p - centre) / reach).norm_squared()).sum::<f64>() / n;
-        let scale = square.sqrt() * reach;
-        if !(scale > 0.0 && scale.is_normal()) {
-            return Err(FitError::OnePoint { points: found });
-        }
-        let inward = |p: &Vector| (p - centre) / scale;
-        let sample = |count: usize| Sample::new(spread(&points, count).map(inward));
-        let fine: Vec<Vector> = spread(&points, FINE[effort as usize]).map(inward).collect();
-        if is_line(&fine) {
-            return Err(FitError::Line { points: found });
-        }
+        // where a sensor saw nothing it may have written its own place
+        let cloud = Centred::new(view.points, LEAST_POINTS, view.viewpoint)?;
+        let (centre, scale) = (cloud.centre, cloud.scale);
+        let inward = |p: &Point| cloud.inward(p);
+        let fine = spread(&cloud.points, FINE[effort as usize]);
         let sides = box_sides(&fine);
         let support = view.support.map(|plane| {
             let normal = plane.normal().into_inner();
@@ -88,7 +62,7 @@ impl Normalised {
             Support { normal, offset, standing, top, tolerance: SUPPORT_TOLERANCE }
         });
         let tallest = support.filter(|s| s.standing).and_then(|s| s.top).unwrap_or(0.0);
-        let outside = view.viewpoint.map(|p| inward(&p.coords)).filter(|p| p.norm() > 1.8);
+        let outside = view.viewpoint.as_ref().map(inward).filter(|p| p.norm() > 1.8);
         let volume = sides.iter().map(|s| s.max(0.1)).product();
         let sight = if outside.is_some() { Sight::OneSide } else { Sight::AllAround { volume } };
         // on a single view stray points and what lies beside the object lead starts astray
@@ -104,7 +78,7 @@ impl Normalised {
             (Some(parts), Some(viewpoint)) if view.free.is_empty() => {
                 outline(&parts.coherent, &viewpoint)
             }
-            _ => view.free.iter().map(|p| inward(&p.coords)).collect(),
+            _ => view.free.iter().map(inward).collect(),
         };
         let seen = if parted { box_sides(start) } else { sides };
         let reach = 0.55 * seen.max().max(tallest);
@@ -116,28 +90,21 @@ impl Normalised {
         Ok(Self {
             centre,
             scale,
-            sketch: sample(SKETCH),
-            coarse: Sample::new(spread(start, COARSE).copied()),
-            middle: sample(MIDDLE[effort as usize]),
+            sketch: sample(&cloud.points, SKETCH),
+            coarse: sample(start, COARSE),
+            middle: sample(&cloud.points, MIDDLE[effort as usize]),
             fine: Sample::new(fine.iter().copied()),
             frames: frames(start, &terms),
             points: fine,
             terms,
             effort,
-            total: found,
+            total: cloud.points.len(),
         })
     }
 }
 
-/// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the
-/// same of each, as a step of the rows of a regular cloud would see only some of its columns.
-fn spread(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let n = points.len();
-    let taken = n.min(count);
-    let stretch = n as f64 / taken.max(1) as f64;
-    let at = move |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
-    (0..taken).map(move |i| &points[at(i).min(n - 1)])
+fn sample(points: &[Vector], count: usize) -> Sample {
+    Sample::new(spread(points, count).into_iter())
 }
 
 /// Sides of the points' box along their principal axes.
@@ -149,12 +116,4 @@ fn box_sides(points: &[Vector]) -> Vector {
         let low = along().fold(f64::INFINITY, f64::min);
         along().fold(f64::NEG_INFINITY, f64::max) - low
     })
-}
-
-/// True when the points have no second direction.
-fn is_line(points: &[Vector]) -> bool {
-    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
-    let mut values = nalgebra::SymmetricEigen::new(scatter / points.len() as f64).eigenvalues;
-    values.as_mut_slice().sort_by(f64::total_cmp);
-    values[1] < 1e-10 * values[2]
 }

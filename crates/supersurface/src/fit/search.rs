@@ -21,15 +21,16 @@ const KEPT: usize = 4;
 /// Starts that are kept though half of them are fewer.
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
-const EXACT: f64 = 1e-3;
+pub(super) const EXACT: f64 = 1e-3;
+/// How many times the annealed scale noise may be while starts are ranked (for both efforts): a leash keeps bodies from
+/// taking outliers for noise, but of things that touch it hides that one body does not explain them.
+const LEASH: [f64; 2] = [f64::INFINITY, 1.5];
 /// How often the near-symmetries are tried (for both efforts).
 const SWITCHES: [usize; 2] = [1, 2];
 /// Share of points that a body may leave out without doubt.
 const LEFT_OUT: f64 = 0.2;
 /// Two hypotheses whose costs differ by less than this many nats are one.
 const SAME: f64 = 0.5;
-/// Noise is never estimated below this share of the cloud's size.
-const NOISE_FLOOR: f64 = 1e-5;
 
 /// The best body of a family; a ball where there is no start.
 pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
@@ -79,6 +80,7 @@ fn search(
     for &(points, rounds, kept) in rounds {
         for h in &mut ranked {
             let schedule = coarse_schedule(h, rounds, rays);
+            let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
             *h = refine(h, points, terms, &schedule, work);
         }
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -136,18 +138,9 @@ fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
 fn coarse_schedule(h: &Hypothesis, rounds: usize, rays: usize) -> Schedule {
     let size = h.parameters.half_extents().iter().sum::<f64>() / 3.0;
     let scale = if h.cost < f64::MAX { h.mixture.scale.min(0.04 * size) } else { 0.12 * size };
-    Schedule { leash: 1.5, ..schedule(rounds, rays, scale) }
+    schedule(rounds, rays, scale)
 }
 
 pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
-    Schedule {
-        rounds,
-        rays,
-        scale,
-        decay: 0.7,
-        floor: NOISE_FLOOR,
-        leash: f64::INFINITY,
-        along_rays: false,
-        tolerance: 0.02,
-    }
+    Schedule { rounds, rays, scale, leash: f64::INFINITY, along_rays: false, tolerance: 0.02 }
 }

@@ -37,11 +37,8 @@ pub enum Stopped {
 pub(super) struct Schedule {
     /// Most rounds.
     pub(super) rounds: usize,
-    /// Lowest scale of the first round; multiplied by `decay` in each.
+    /// Lowest scale of the first round; multiplied by [`DECAY`] in each.
     pub(super) scale: f64,
-    pub(super) decay: f64,
-    /// Scale below which noise is never estimated.
-    pub(super) floor: f64,
     /// How many times the annealed scale the noise may be while iterating, where that is limited: then a body cannot
     /// take outliers for noise.
     pub(super) leash: f64,
@@ -56,10 +53,15 @@ pub(super) struct Schedule {
 impl Schedule {
     /// Limits of the noise when the annealed scale is `annealed`.
     fn limits(&self, s: &Parameters, annealed: f64) -> [f64; 2] {
-        let low = self.floor.max(annealed);
+        let low = NOISE_FLOOR.max(annealed);
         [low, (self.leash * low.max(LEASHED)).min(noisiest(s))]
     }
 }
+
+/// How the lowest scale comes down from round to round.
+pub(super) const DECAY: f64 = 0.7;
+/// Scale below which noise is never estimated, in normalised lengths.
+pub(super) const NOISE_FLOOR: f64 = 1e-5;
 
 /// Most noise that a body may have, as a share of its mean half extent: what is more is no surface.
 const NOISIEST: f64 = 0.15;
@@ -195,7 +197,7 @@ pub(super) fn refine(
             damping = (damping * 6.0).max(1e-4);
         }
         let scale = mixture.scale;
-        annealed *= schedule.decay;
+        annealed *= DECAY;
         mixture.density = terms.outlier_density(&s);
         mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
         failures = if gain.is_some() { 0 } else { failures + 1 };
@@ -210,7 +212,7 @@ pub(super) fn refine(
             break;
         }
     }
-    mixture.update(&work.now.distances, n, [schedule.floor, noisiest(&s)], 6);
+    mixture.update(&work.now.distances, n, [NOISE_FLOOR, noisiest(&s)], 6);
     work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
     terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);

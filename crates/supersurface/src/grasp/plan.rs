@@ -45,8 +45,8 @@ const SAME_TURN: f64 = 0.26;
 
 /// Ways to hold an object, best first; or why there is none.
 ///
-/// `fit` is what is known of the object's hidden side; without one, or where it fits badly, the points alone
-/// decide. Poses are in the frame of the cloud.
+/// `fit` is what is known of the object's hidden side; without one, or where it fits badly or is deformed (which no table
+/// knows), the points alone decide. Poses are in the frame of the cloud.
 pub fn plan(
     object: usize,
     fit: Option<&Fit>,
@@ -54,6 +54,7 @@ pub fn plan(
     gripper: &Gripper,
     options: &GraspOptions,
 ) -> Result<Vec<Grasp>, Refusal> {
+    let fit = fit.filter(|f| !f.family.is_deformed());
     if let (Kind::Jaw(jaw), Some(fit)) = (&gripper.kind, fit) {
         whole_is_too_wide(fit, around, jaw)?;
     }

@@ -21,7 +21,7 @@ mod space;
 mod supershape;
 mod toroid;
 
-use crate::fit::FitError;
+use crate::fit::{FitError, Stopped};
 use crate::shape::{Hyperquadric, Implicit, InvalidShape, Posed};
 use crate::surface::Solid;
 use crate::{Point, Vector};
@@ -113,15 +113,6 @@ impl Implicit for GenericShape {
     fn contains(&self, p: &Point) -> bool {
         self.implicit().contains(p)
     }
-}
-
-/// Why the last refinement ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stopped {
-    /// A round gained nothing that counts.
-    Converged,
-    /// The rounds were used up.
-    Rounds,
 }
 
 /// A recovered shape and how well it explains the points.

@@ -9,10 +9,12 @@ use super::solver::{Hypothesis, Schedule, refine};
 use super::space::Space;
 use super::supershape;
 use super::toroid::Toroid;
-use super::{GenericFit, GenericModel, GenericOptions, Stopped};
+use super::{GenericFit, GenericModel, GenericOptions};
+use crate::fit::centred::{Centred, is_finite, spread};
 use crate::fit::noise::{Law, Mixture};
+use crate::fit::patches::scatter;
 use crate::fit::start::quantile;
-use crate::fit::{Family, FitError, FitOptions, View, fit};
+use crate::fit::{Family, FitError, FitOptions, Stopped, View, fit};
 use crate::shape::Posed;
 use crate::surface::Surface;
 use crate::{Point, Pose, Vector};
@@ -74,59 +76,26 @@ pub(super) struct Ground {
     pub(super) toroid: Option<(f64, Frame)>,
 }
 
-/// The cloud with zero mean and unit root mean square.
-struct Normalised {
-    centre: Vector,
-    scale: f64,
-    points: Vec<Vector>,
+/// The points and the space about them.
+struct Cloud {
+    centred: Centred,
     space: Space,
 }
 
-impl Normalised {
+impl Cloud {
     fn new(points: &[Point], needed: usize) -> Result<Self, FitError> {
-        let finite = |p: &Vector| p.iter().all(|v| v.is_finite());
-        let points: Vec<Vector> = points.iter().map(|p| p.coords).filter(finite).collect();
-        let found = points.len();
-        let Some(origin) = points.first().copied().filter(|_| found >= needed) else {
-            return Err(FitError::TooFewPoints { found, needed });
-        };
-        // about the first point and by the largest offset, so that nothing cancels or overflows
-        let reach = points.iter().map(|p| (p - origin).amax()).fold(0.0, f64::max);
-        let magnitude = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
-        if reach <= 1e-12 * magnitude || !reach.is_normal() {
-            return Err(FitError::OnePoint { points: found });
-        }
-        let n = found as f64;
-        let centre =
-            origin + points.iter().map(|p| (p - origin) / reach).sum::<Vector>() / n * reach;
-        let square = points.iter().map(|p| ((p - centre) / reach).norm_squared()).sum::<f64>() / n;
-        let scale = square.sqrt() * reach;
-        if !scale.is_normal() || !finite(&centre) {
-            return Err(FitError::OnePoint { points: found });
-        }
-        let points: Vec<Vector> = points.iter().map(|p| (p - centre) / scale).collect();
-        let mut values = SymmetricEigen::new(scatter(&points)).eigenvalues;
-        values.as_mut_slice().sort_by(f64::total_cmp);
-        if values[1] < 1e-10 * values[2] {
-            return Err(FitError::Line { points: found });
-        }
-        let space = Space::about(&points);
-        Ok(Self { centre, scale, points, space })
+        let centred = Centred::new(points, needed, None)?;
+        let space = Space::about(&centred.points);
+        Ok(Self { centred, space })
     }
 
-    /// About `count` points, one of each of so many equal stretches of their order.
     fn spread(&self, count: usize) -> Vec<Vector> {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let n = self.points.len();
-        let taken = n.min(count.max(1));
-        let stretch = n as f64 / taken as f64;
-        let at = |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
-        (0..taken).filter_map(|i| self.points.get(at(i).min(n - 1)).copied()).collect()
+        spread(&self.centred.points, count.max(1))
     }
 
     fn ground(&self, toroid: bool) -> Ground {
         let points = self.spread(MIDDLE);
-        let cloud: Vec<Point> = self.points.iter().map(|p| Point::from(*p)).collect();
+        let cloud: Vec<Point> = self.centred.points.iter().map(|p| Point::from(*p)).collect();
         let found = |family| {
             let options = FitOptions::only(family);
             let fit = fit(&View::all_around(&cloud), &options).ok()?;
@@ -139,19 +108,12 @@ impl Normalised {
     }
 }
 
-fn scatter(points: &[Vector]) -> Matrix3<f64> {
-    let n = points.len().max(1) as f64;
-    let mean = points.iter().sum::<Vector>() / n;
-    points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
-}
-
 /// Ring ratio (1 for a superellipsoid) and frame of a special fit.
 fn frame_of(surface: &Posed<Surface>) -> (f64, Frame) {
     let (ring, half, exponents) = match surface.shape() {
         Surface::Superellipsoid(s) => (1.0, s.semi_axes(), s.exponents()),
         Surface::Supertoroid(s) => (s.ring_ratio(), s.semi_axes(), s.exponents()),
-        #[allow(unreachable_patterns)]
-        other => (1.0, other.half_extents(), [1.0; 2]),
+        other => (1.0, other.half_extents(), other.exponents()),
     };
     let rotation = surface.pose().rotation.to_rotation_matrix();
     (ring, Frame { rotation, position: surface.pose().translation.vector, half, exponents })
@@ -159,7 +121,7 @@ fn frame_of(surface: &Posed<Surface>) -> (f64, Frame) {
 
 /// The box of the points along their principal axes.
 fn principal(points: &[Vector]) -> Frame {
-    let axes = SymmetricEigen::new(scatter(points)).eigenvectors;
+    let axes = SymmetricEigen::new(scatter(points.iter())).eigenvectors;
     let (x, y): (Vector, Vector) = (axes.column(0).into(), axes.column(1).into());
     let axes = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     let (mut middle, mut half) = (Vector::zeros(), [0.0; 3]);
@@ -189,7 +151,7 @@ pub(super) fn search(
         GenericModel::Extended { profile, section } => 9 + profile + section,
         GenericModel::Toroid { .. } => 17,
     };
-    let cloud = Normalised::new(points, 2 * numbers)?;
+    let cloud = Cloud::new(points, 2 * numbers)?;
     match model {
         GenericModel::Hyperquadric { terms } => {
             let starts = Terms { count: terms }.starts(&cloud.ground(false));
@@ -239,7 +201,7 @@ fn keep<M>(mut ranked: Vec<Hypothesis<M>>, points: usize, count: usize) -> Vec<H
     ranked
 }
 
-impl Normalised {
+impl Cloud {
     fn best<M: Member>(
         &self,
         points: &[Point],
@@ -310,7 +272,7 @@ impl Normalised {
 
     /// True when the numbers make a shape: a bend may fold, a hyperquadric may be empty.
     fn is_shape<M: Member>(&self, h: &Hypothesis<M>) -> bool {
-        h.body.member.shape(&h.body.numbers, self.scale).is_ok()
+        h.body.member.shape(&h.body.numbers, self.centred.scale).is_ok()
     }
 
     /// Leaves out what is no shape, unless nothing is one: then the error says why.
@@ -325,11 +287,11 @@ impl Normalised {
         points: &[Point],
         h: &Hypothesis<M>,
     ) -> Result<GenericFit, FitError> {
-        let mut distances = h.body.distances(&self.points);
+        let mut distances = h.body.distances(&self.centred.points);
         let mut next = distances.iter();
-        let finite = |p: &Point| p.iter().all(|v| v.is_finite());
-        let belongs =
-            |p: &Point| finite(p) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5);
+        let belongs = |p: &Point| {
+            is_finite(&p.coords) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5)
+        };
         let inliers: Vec<bool> = points.iter().map(belongs).collect();
         let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
         distances.iter_mut().for_each(|d| *d = d.abs());
@@ -337,15 +299,15 @@ impl Normalised {
             return Err(FitError::NoAgreement { share });
         }
         let body = &h.body;
-        let shape = body.member.shape(&body.numbers, self.scale)?;
+        let shape = body.member.shape(&body.numbers, self.centred.scale)?;
         let pose = Pose::from_parts(
-            (body.position * self.scale + self.centre).into(),
+            (body.position * self.centred.scale + self.centred.centre).into(),
             nalgebra::UnitQuaternion::from_rotation_matrix(&body.rotation),
         );
         Ok(GenericFit {
             surface: Posed::new(shape, pose)?,
-            noise: h.mixture.scale * self.scale,
-            residual: quantile(&mut distances, 0.5) * self.scale,
+            noise: h.mixture.scale * self.centred.scale,
+            residual: quantile(&mut distances, 0.5) * self.centred.scale,
             inliers,
             iterations: h.iterations,
             stopped: h.stopped,

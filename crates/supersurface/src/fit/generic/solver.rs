@@ -3,11 +3,12 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::Stopped;
 use super::member::{Body, Member};
 use super::space::Space;
 use crate::Vector;
+use crate::fit::Stopped;
 use crate::fit::noise::Mixture;
+use crate::fit::solver::{DECAY, NOISE_FLOOR};
 
 /// A body with its noise and its cost, the negative log-likelihood of the points as a density on the surface.
 #[derive(Clone, Debug)]
@@ -32,9 +33,6 @@ pub(super) struct Schedule {
     pub(super) tolerance: f64,
 }
 
-const DECAY: f64 = 0.7;
-/// Scale below which noise is never estimated.
-const NOISE_FLOOR: f64 = 1e-5;
 /// Trials of a round, each with more damping.
 const TRIALS: usize = 5;
 
