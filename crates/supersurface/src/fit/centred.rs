@@ -18,14 +18,8 @@ pub(super) struct Centred {
 }
 
 impl Centred {
-    /// The finite points but those at `without`. Fails when they are fewer than `needed`, one point or on one line.
-    pub(super) fn new(
-        points: &[Point],
-        needed: usize,
-        without: Option<Point>,
-    ) -> Result<Self, FitError> {
-        let counts = |p: &&Point| is_finite(&p.coords) && Some(**p) != without;
-        let points: Vec<Vector> = points.iter().filter(counts).map(|p| p.coords).collect();
+    /// Fails when the points are fewer than `needed`, one point or on one line. They must be finite.
+    pub(super) fn new(points: &[Vector], needed: usize) -> Result<Self, FitError> {
         let found = points.len();
         let Some(origin) = points.first().copied().filter(|_| found >= needed) else {
             return Err(FitError::TooFewPoints { found, needed });
@@ -59,6 +53,11 @@ impl Centred {
     }
 }
 
+/// The finite points.
+pub(super) fn finite(points: &[Point]) -> Vec<Vector> {
+    points.iter().map(|p| p.coords).filter(is_finite).collect()
+}
+
 pub(super) fn is_finite(v: &Vector) -> bool {
     v.iter().all(|x| x.is_finite())
 }
@@ -66,10 +65,14 @@ pub(super) fn is_finite(v: &Vector) -> bool {
 /// About `count` of the points, evenly spread over their order: one of each of `count` equal stretches, not the
 /// same of each, as a step of the rows of a regular cloud would see only some of its columns.
 pub(super) fn spread(points: &[Vector], count: usize) -> Vec<Vector> {
+    spread_over(points.len(), count).map(|i| points[i]).collect()
+}
+
+/// The same as places among `n`.
+pub(super) fn spread_over(n: usize, count: usize) -> impl Iterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let n = points.len();
     let taken = n.min(count);
     let stretch = n as f64 / taken.max(1) as f64;
-    let at = |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
-    (0..taken).map(|i| points[at(i).min(n - 1)]).collect()
+    let at = move |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
+    (0..taken).map(move |i| at(i).min(n - 1))
 }

@@ -143,7 +143,7 @@ fn ellipsoid_or_toroid(cloud: &Normalised) -> (Hypothesis, f64) {
         let nearer = (typical(cloud, &ellipsoid) / typical(cloud, &toroid)).ln();
         margin = if cloud.fine.len() < MANY { -1.0 } else { nearer - CLEARLY };
     }
-    if margin > 0.0 && shows_hole(&toroid, &cloud.points, cloud.terms.viewpoint) {
+    if margin > 0.0 && shows_hole(&toroid, &cloud.points, cloud.terms.only_eye()) {
         (toroid, margin)
     } else {
         (ellipsoid, -margin)
@@ -173,7 +173,7 @@ fn may_be_hollow(cloud: &Normalised, h: &Hypothesis) -> bool {
     let mut rays = Rays::default();
     cloud.terms.intrusions(&h.parameters, RAYS, true, &mut rays, &mut intrusions);
     let through = deep_among(&intrusions);
-    let looked = cloud.terms.free.len().min(RAYS) + cloud.terms.before.len().min(RAYS / 2);
+    let looked = cloud.terms.lines_of_sight(RAYS, true);
     within as f64 > HOLLOW * cloud.points.len() as f64 || through as f64 > CROSSED * looked as f64
 }
 
@@ -187,7 +187,7 @@ fn toroid_margin(ellipsoid: &Hypothesis, toroid: &Hypothesis, points: usize) -> 
 
 /// True when the cloud shows the hole of a toroid: enough points lie on the inner half of the tube, none
 /// lies in the mouth of the hole (a floor farther in makes it a pot), and the hole is wider than the noise.
-fn shows_hole(toroid: &Hypothesis, points: &[Vector], viewpoint: Option<Vector>) -> bool {
+fn shows_hole(toroid: &Hypothesis, points: &[Vector], eye: Option<Vector>) -> bool {
     let s = &toroid.parameters;
     if !s.family.is_ring() {
         return false;
@@ -198,9 +198,8 @@ fn shows_hole(toroid: &Hypothesis, points: &[Vector], viewpoint: Option<Vector>)
     if hole < 4.0 * toroid.mixture.scale || hole < 0.12 * outer {
         return false;
     }
-    // the side of the mid-plane on which the sensor stands; without one both count
-    let mouth =
-        viewpoint.map(|v| s.rotation.inverse_transform_vector(&(v - s.position)).z.signum());
+    // the side of the mid-plane on which the sensor stands; without one, or with several, both count
+    let mouth = eye.map(|v| s.rotation.inverse_transform_vector(&(v - s.position)).z.signum());
     let (mut inner, mut blocked, mut inliers) = (0usize, 0usize, 0usize);
     let mut all = Evaluation::default();
     all.fill_distances(s, &Sample::new(points.iter().copied()));

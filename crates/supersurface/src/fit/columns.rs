@@ -10,6 +10,8 @@ use crate::numeric::lanes::{Job, WIDTH, dispatch};
 pub(super) struct Sample {
     columns: [Vec<f64>; 3],
     count: usize,
+    /// Unit directions in which sensors saw the points; none where that is not known.
+    rays: Vec<Vector>,
 }
 
 /// Where padding stands: far from any body in normalised coordinates.
@@ -22,7 +24,17 @@ impl Sample {
         sample
     }
 
-    /// Takes other points.
+    /// Points and the directions in which they were seen.
+    pub(super) fn seen(points: impl Iterator<Item = Vector>, rays: Vec<Vector>) -> Self {
+        Self { rays, ..Self::new(points) }
+    }
+
+    /// Unit directions in which sensors saw the points; none where that is not known.
+    pub(super) fn rays(&self) -> &[Vector] {
+        &self.rays
+    }
+
+    /// Takes other points, of which no directions are known.
     pub(super) fn set(&mut self, points: impl Iterator<Item = Vector>) {
         let [x, y, z] = &mut self.columns;
         for column in [&mut *x, y, z] {
@@ -33,6 +45,7 @@ impl Sample {
             y.push(p.y);
             z.push(p.z);
         }
+        self.rays.clear();
         self.count = x.len();
         let padded = self.count.next_multiple_of(WIDTH);
         for column in [x, y, z] {

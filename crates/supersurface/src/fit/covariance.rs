@@ -62,10 +62,8 @@ const NAMES: [&str; COUNT] = [
 pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covariance> {
     let s = &h.parameters;
     let mut at = Evaluation::default();
-    match (cloud.terms.viewpoint, cloud.terms.sight, cloud.effort) {
-        (Some(viewpoint), Sight::OneSide, Effort::Thorough) => {
-            Sights::default().fill(s, &cloud.fine, &viewpoint, &mut at);
-        }
+    match (cloud.terms.sight, cloud.effort) {
+        (Sight::OneSide, Effort::Thorough) => Sights::default().fill(s, &cloud.fine, &mut at),
         _ => at.fill(s, &cloud.fine),
     }
     let index: Vec<usize> = (0..NAMES.len()).filter(|k| s.family.has(*k)).collect();

@@ -1,6 +1,7 @@
 //! From the best body back to the view: units, every point judged, how sure all is.
 
-use super::centred::is_finite;
+use nalgebra::Isometry3;
+
 use super::columns::distances;
 use super::covariance::covariance;
 use super::prepare::Normalised;
@@ -15,21 +16,22 @@ const LEAST_SHARE: f64 = 0.1;
 /// The fit that a hypothesis is.
 pub(super) fn judge(
     cloud: &Normalised,
-    view: &View<'_>,
+    views: &[View<'_>],
     h: &Hypothesis,
     margin: f64,
+    moves: Vec<Isometry3<f64>>,
 ) -> Result<Fit, FitError> {
     let s = &h.parameters;
     let inward = |p: &Point| (p.coords - cloud.centre) / cloud.scale;
-    let counts = |p: &Point| is_finite(&inward(p)) && Some(*p) != view.viewpoint;
-    let counted = view.points.iter().filter(|p| counts(p)).map(inward);
+    let all = || views.iter().flat_map(|view| view.points.iter().map(move |p| (view, p)));
+    let counted = all().filter(|(view, p)| view.counts(p)).map(|(_, p)| inward(p));
     let mut distances = distances(s, counted);
     let mut next = distances.iter();
-    let mut judge = |p: &Point| {
-        let d = if counts(p) { next.next() } else { None };
+    let mut judge = |(view, p): (&View<'_>, &Point)| {
+        let d = if view.counts(p) { next.next() } else { None };
         d.map_or(0.0, |d| h.mixture.belongs(*d) as f32)
     };
-    let probabilities: Vec<f32> = view.points.iter().map(&mut judge).collect();
+    let probabilities: Vec<f32> = all().map(&mut judge).collect();
     let inliers: Vec<bool> = probabilities.iter().map(|p| *p > 0.5).collect();
     let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
     distances.iter_mut().for_each(|d| *d = d.abs());
@@ -44,6 +46,7 @@ pub(super) fn judge(
         inliers,
         probabilities,
         margin,
+        moves,
         covariance: covariance(cloud, h),
         iterations: h.rounds,
         stopped: h.stopped,

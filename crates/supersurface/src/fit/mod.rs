@@ -38,6 +38,7 @@ mod noise;
 mod parameters;
 mod patches;
 mod pieces;
+mod poses;
 mod prepare;
 mod pull_back;
 mod rays;
@@ -50,15 +51,21 @@ mod start;
 mod switch;
 mod terms;
 
+use nalgebra::Isometry3;
+
 pub use covariance::Covariance;
 pub use free_space::{free_points, outline_points};
 pub use parameters::Family;
+pub use poses::PoseError;
 pub use solver::Stopped;
 
+use self::centred::is_finite;
 use self::choose::choose;
 use self::judge::judge;
+use self::poses::{MovedView, moves};
 use self::prepare::Normalised;
 use self::search::best;
+use self::solver::Hypothesis;
 use crate::Point;
 use crate::shape::{InvalidShape, Plane, Posed};
 use crate::surface::Surface;
@@ -80,6 +87,11 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    /// True for points that count: where a sensor saw nothing it may have written its own place.
+    fn counts(&self, p: &Point) -> bool {
+        is_finite(&p.coords) && Some(*p) != self.viewpoint
+    }
+
     /// Points from all sides, with nothing else known.
     pub const fn all_around(points: &'a [Point]) -> Self {
         Self { points, viewpoint: None, support: None, standing: false, free: &[] }
@@ -143,16 +155,18 @@ pub struct Fit {
     pub noise: f64,
     /// Median of the absolute first-order distances of all points, in metres.
     pub residual: f64,
-    /// Which of the view's points belong to the surface (probability over one half); false for points that
-    /// are not finite or lie at the viewpoint.
+    /// Which of the points belong to the surface (probability over one half), one view after the other; false for points
+    /// that are not finite or lie at the viewpoint.
     pub inliers: Vec<bool>,
-    /// Probability of each of the view's points to belong to the surface, in [0, 1]; 0 for those that do not
-    /// count.
+    /// Probability of each of these points to belong to the surface, in [0, 1]; 0 for those that do not count.
     pub probabilities: Vec<f32>,
     /// Evidence for the chosen family against the next best, in nats, after the price of parameters; 0 when one
     /// family was asked for or no other was worth a trial, negative on a view where the likelihood alone speaks for a ring
     /// whose hole is not seen.
     pub margin: f64,
+    /// How each view was moved, in the frame of the points, for all to agree within the errors of their poses; as they are
+    /// where no error was given.
+    pub moves: Vec<Isometry3<f64>>,
     /// How sure the parameters are; `None` where the points leave that open.
     pub covariance: Option<Covariance>,
     /// Rounds of the solver on the way from the start to this surface.
@@ -204,12 +218,57 @@ pub enum FitError {
     Invalid(#[from] InvalidShape),
 }
 
-/// Fits one supersurface.
+/// Fits one supersurface to one view.
 pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
-    let cloud = Normalised::new(view, options.effort)?;
-    let (hypothesis, margin) = match options.families {
-        [family] => (best(&cloud, *family), 0.0),
-        families => choose(&cloud, families),
-    };
-    judge(&cloud, view, &hypothesis, margin)
+    fit_views(std::slice::from_ref(view), &[], options)
+}
+
+/// Fits one supersurface to several views of the same object, all in one frame, whose poses may be off by `errors`, one a
+/// view; a view without one is exact. At least one view should be: it holds the frame.
+///
+/// Lines of sight count where every view names its viewpoint. The first support counts. The covariance takes the poses
+/// that were found as exact.
+///
+/// ```
+/// use supersurface::{Point, fit::{FitOptions, Family, View, fit_views}};
+/// // a ball of 5 cm, its left and its right half seen by two sensors
+/// let ball = |i: i32| {
+///     let (z, a) = ((f64::from(i) + 0.5) / 400.0 - 1.0, 2.4 * f64::from(i));
+///     Point::new((1.0 - z * z).sqrt() * a.cos(), (1.0 - z * z).sqrt() * a.sin(), z) * 0.05
+/// };
+/// let (left, right): (Vec<Point>, Vec<Point>) = (0..800).map(ball).partition(|p| p.x < 0.0);
+/// let see = |points, x| View { viewpoint: Some(Point::new(x, 0.0, 0.0)), ..View::all_around(points) };
+/// let views = [see(&left, -0.6), see(&right, 0.6)];
+/// let found = fit_views(&views, &[], &FitOptions::only(Family::Superellipsoid))?;
+/// assert!(found.residual < 1e-4);
+/// # Ok::<(), supersurface::fit::FitError>(())
+/// ```
+pub fn fit_views(
+    views: &[View<'_>],
+    errors: &[PoseError],
+    options: &FitOptions,
+) -> Result<Fit, FitError> {
+    errors.iter().try_for_each(PoseError::check)?;
+    let cloud = Normalised::new(views, options.effort)?;
+    let (hypothesis, margin) = recover(&cloud, options);
+    let still = vec![Isometry3::identity(); views.len()];
+    if views.len() < 2 || errors.iter().all(|e| *e == PoseError::NONE) {
+        return judge(&cloud, views, &hypothesis, margin, still);
+    }
+    let moves = moves(&cloud, views, errors, &hypothesis);
+    let moved: Vec<MovedView> =
+        views.iter().zip(&moves).map(|(v, m)| MovedView::new(v, m)).collect();
+    let views: Vec<View<'_>> =
+        moved.iter().zip(views).map(|(moved, view)| moved.of(view)).collect();
+    let cloud = Normalised::new(&views, options.effort)?;
+    let (hypothesis, margin) = recover(&cloud, options);
+    judge(&cloud, &views, &hypothesis, margin, moves)
+}
+
+/// The best body of the families that were asked for, and its margin.
+fn recover(cloud: &Normalised, options: &FitOptions) -> (Hypothesis, f64) {
+    match options.families {
+        [family] => (best(cloud, *family), 0.0),
+        families => choose(cloud, families),
+    }
 }

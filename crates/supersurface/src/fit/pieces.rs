@@ -16,10 +16,10 @@ const REACH: f64 = 1.5;
 
 /// What hangs together in a cloud.
 pub(super) struct Pieces {
-    /// The largest piece; all points where none hangs together.
-    pub(super) largest: Vec<Vector>,
-    /// All pieces that are no crumbs.
-    pub(super) coherent: Vec<Vector>,
+    /// Places of the points of the largest piece; of all where none hangs together.
+    pub(super) largest: Vec<usize>,
+    /// Those of all pieces that are no crumbs.
+    pub(super) coherent: Vec<usize>,
 }
 
 /// Share of the points below which a piece is a crumb.
@@ -27,7 +27,8 @@ const CRUMB: f64 = 0.02;
 
 /// The pieces of a cloud.
 pub(super) fn pieces(points: &[Vector]) -> Pieces {
-    let whole = || Pieces { largest: points.to_vec(), coherent: points.to_vec() };
+    let all = || (0..points.len()).collect();
+    let whole = || Pieces { largest: all(), coherent: all() };
     let radius = REACH * spacing(points);
     if !(radius > 0.0 && radius.is_finite()) {
         return whole();
@@ -75,9 +76,8 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
     let Some(largest) = (0..sizes.len()).max_by_key(|k| sizes[*k]).filter(|k| sizes[*k] > 0) else {
         return whole();
     };
-    let of = |wanted: &dyn Fn(usize) -> bool| {
-        points.iter().zip(&piece).filter(|(_, p)| wanted(**p)).map(|(p, _)| *p).collect()
-    };
+    let of =
+        |wanted: &dyn Fn(usize) -> bool| (0..points.len()).filter(|i| wanted(piece[*i])).collect();
     let crumb = (CRUMB * points.len() as f64) as usize;
     Pieces {
         largest: of(&|p| p == largest),

@@ -1,11 +1,11 @@
 //! A view made ready: centred, thinned, with all that is known beside the points and frames to begin in.
 
-use super::centred::{Centred, spread};
+use super::centred::{Centred, spread_over};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
 use super::start::{Frame, frames, quantile};
-use super::terms::{Sight, Support, Terms};
+use super::terms::{Eye, Sight, Support, Terms};
 use super::{Effort, FitError, View};
 use crate::{Point, Vector};
 
@@ -26,7 +26,7 @@ const HOVERING: f64 = 0.8;
 /// The support is known no better than this share of the cloud's size.
 const SUPPORT_TOLERANCE: f64 = 0.01;
 
-/// The view with zero mean and unit root mean square.
+/// What was seen, with zero mean and unit root mean square.
 pub(super) struct Normalised {
     pub(super) centre: Vector,
     pub(super) scale: f64,
@@ -35,6 +35,8 @@ pub(super) struct Normalised {
     pub(super) middle: Sample,
     pub(super) fine: Sample,
     pub(super) points: Vec<Vector>,
+    /// Which view has seen each of the points.
+    pub(super) seen_by: Vec<usize>,
     pub(super) frames: Vec<Frame>,
     pub(super) terms: Terms,
     pub(super) effort: Effort,
@@ -43,68 +45,102 @@ pub(super) struct Normalised {
 }
 
 impl Normalised {
-    pub(super) fn new(view: &View<'_>, effort: Effort) -> Result<Self, FitError> {
-        // where a sensor saw nothing it may have written its own place
-        let cloud = Centred::new(view.points, LEAST_POINTS, view.viewpoint)?;
-        let (centre, scale) = (cloud.centre, cloud.scale);
+    pub(super) fn new(views: &[View<'_>], effort: Effort) -> Result<Self, FitError> {
+        let (mut points, mut seen_by) = (Vec::new(), Vec::new());
+        for (k, view) in views.iter().enumerate() {
+            points.extend(view.points.iter().filter(|p| view.counts(p)).map(|p| p.coords));
+            seen_by.resize(points.len(), k);
+        }
+        let cloud = Centred::new(&points, LEAST_POINTS)?;
+        let (centre, scale, total) = (cloud.centre, cloud.scale, points.len());
         let inward = |p: &Point| cloud.inward(p);
-        let fine = spread(&cloud.points, FINE[effort as usize]);
-        let sides = box_sides(&fine);
-        let support = view.support.map(|plane| {
-            let normal = plane.normal().into_inner();
-            let offset = (normal.dot(&centre) + plane.offset()) / scale;
-            let mut heights: Vec<f64> = fine.iter().map(|p| normal.dot(p) + offset).collect();
-            // a piece that hovers higher than it is large is not the top of something that stands there
-            let standing = view.standing && quantile(&mut heights, 0.02) < HOVERING * sides.max();
-            let highest = quantile(&mut heights, 0.995);
-            let above = view.viewpoint.is_some_and(|p| plane.height(&p) / scale > highest);
-            let top = above.then_some(highest);
-            Support { normal, offset, standing, top, tolerance: SUPPORT_TOLERANCE }
-        });
+        let all = Seen { points: &cloud.points, by: &seen_by };
+        let (points, seen_by) = all.chosen(spread_over(total, FINE[effort as usize]));
+        let fine = Seen { points: &points, by: &seen_by };
+        let sides = box_sides(&points);
+        // one sensor whose place is not known leaves open what any sees
+        let place =
+            |view: &View<'_>| view.viewpoint.as_ref().map(inward).filter(|p| p.norm() > 1.8);
+        let places: Vec<Vector> =
+            views.iter().map(place).collect::<Option<_>>().unwrap_or_default();
+        let support =
+            views.iter().find_map(|view| Some((view, view.support?))).map(|(view, plane)| {
+                let normal = plane.normal().into_inner();
+                let offset = (normal.dot(&centre) + plane.offset()) / scale;
+                let mut heights: Vec<f64> = points.iter().map(|p| normal.dot(p) + offset).collect();
+                // a piece that hovers higher than it is large is not the top of something that stands there
+                let standing =
+                    view.standing && quantile(&mut heights, 0.02) < HOVERING * sides.max();
+                let highest = quantile(&mut heights, 0.995);
+                let above = |p: &Vector| normal.dot(p) + offset > highest;
+                let top = places.iter().any(above).then_some(highest);
+                Support { normal, offset, standing, top, tolerance: SUPPORT_TOLERANCE }
+            });
         let tallest = support.filter(|s| s.standing).and_then(|s| s.top).unwrap_or(0.0);
-        let outside = view.viewpoint.as_ref().map(inward).filter(|p| p.norm() > 1.8);
         let volume = sides.iter().map(|s| s.max(0.1)).product();
-        let sight = if outside.is_some() { Sight::OneSide } else { Sight::AllAround { volume } };
-        // on a single view stray points and what lies beside the object lead starts astray
+        let sight = if places.is_empty() { Sight::AllAround { volume } } else { Sight::OneSide };
+        // seen from one side, stray points and what lies beside the object lead starts astray
         let parts = match (sight, effort) {
-            (Sight::OneSide, Effort::Thorough) => Some(pieces(&fine)),
+            (Sight::OneSide, Effort::Thorough) => Some(pieces(&points)),
             _ => None,
         };
         let piece = parts.as_ref().map_or(&[][..], |p| &p.largest);
         let parted =
-            piece.len() < (WHOLE * fine.len() as f64) as usize && piece.len() > LEAST_POINTS;
-        let start: &[Vector] = if parted { piece } else { &fine };
-        let free = match (&parts, outside) {
-            (Some(parts), Some(viewpoint)) if view.free.is_empty() => {
-                outline(&parts.coherent, &viewpoint)
-            }
-            _ => view.free.iter().map(inward).collect(),
-        };
-        let seen = if parted { box_sides(start) } else { sides };
-        let reach = 0.55 * seen.max().max(tallest);
-        let before = outside.map_or(Vec::new(), |viewpoint| {
-            let nearer = |p: &Vector| p - (p - viewpoint).normalize() * BEFORE;
-            start.iter().map(nearer).collect()
+            piece.len() < (WHOLE * points.len() as f64) as usize && piece.len() > LEAST_POINTS;
+        let everything: Vec<usize> = (0..points.len()).collect();
+        let start = if parted { piece } else { &everything };
+        let eyes = places.iter().enumerate().map(|(k, place)| {
+            let own = |among: &[usize]| -> Vec<Vector> {
+                among.iter().filter(|i| seen_by[**i] == k).map(|i| points[*i]).collect()
+            };
+            let free = match &parts {
+                Some(parts) if views[k].free.is_empty() => outline(&own(&parts.coherent), place),
+                _ => views[k].free.iter().map(inward).collect(),
+            };
+            let nearer = |p: Vector| p - (p - place).normalize() * BEFORE;
+            Eye { place: *place, free, before: own(start).into_iter().map(nearer).collect() }
         });
-        let terms = Terms { support, viewpoint: outside, free, before, sight, reach };
+        let eyes: Vec<Eye> = eyes.collect();
+        let (start, start_by) = fine.chosen(start.iter().copied());
+        let seen = if parted { box_sides(&start) } else { sides };
+        let reach = 0.55 * seen.max().max(tallest);
+        let terms = Terms { support, eyes, sight, reach };
         Ok(Self {
             centre,
             scale,
-            sketch: sample(&cloud.points, SKETCH),
-            coarse: sample(start, COARSE),
-            middle: sample(&cloud.points, MIDDLE[effort as usize]),
-            fine: Sample::new(fine.iter().copied()),
-            frames: frames(start, &terms),
-            points: fine,
+            sketch: all.sample(&places, SKETCH),
+            coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
+            middle: all.sample(&places, MIDDLE[effort as usize]),
+            fine: fine.sample(&places, total),
+            frames: frames(&start, &terms),
+            points,
+            seen_by,
             terms,
             effort,
-            total: cloud.points.len(),
+            total,
         })
     }
 }
 
-fn sample(points: &[Vector], count: usize) -> Sample {
-    Sample::new(spread(points, count).into_iter())
+/// Points and the numbers of the views that saw them.
+#[derive(Clone, Copy)]
+struct Seen<'a> {
+    points: &'a [Vector],
+    by: &'a [usize],
+}
+
+impl Seen<'_> {
+    fn chosen(&self, places: impl Iterator<Item = usize>) -> (Vec<Vector>, Vec<usize>) {
+        places.map(|i| (self.points[i], self.by[i])).unzip()
+    }
+
+    /// About `count` of the points, seen from the given places of the sensors where these are known.
+    fn sample(&self, sensors: &[Vector], count: usize) -> Sample {
+        let (points, by) = self.chosen(spread_over(self.points.len(), count));
+        let away = |(p, k): (&Vector, &usize)| Some((p - sensors.get(*k)?).normalize());
+        let rays = points.iter().zip(&by).filter_map(away).collect();
+        Sample::seen(points.into_iter(), rays)
+    }
 }
 
 /// Sides of the points' box along their principal axes.

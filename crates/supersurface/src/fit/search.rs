@@ -96,7 +96,7 @@ fn search(
     }
     for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
-        for relative in relatives(&best.parameters, terms.viewpoint) {
+        for relative in relatives(&best.parameters, terms.only_eye()) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(0.05);
             let schedule = schedule(8, MIDDLE_RAYS, scale);

@@ -19,39 +19,31 @@ const LONGEST: f64 = 0.3;
 /// Buffers of the way along the rays.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sights {
-    rays: Vec<Vector>,
     places: Vec<Vector>,
     sample: Sample,
     there: Evaluation,
 }
 
 impl Sights {
-    /// Fills `out` with the residuals of the points along the rays from `viewpoint`, positive before the surface, and
-    /// their derivatives.
-    pub(super) fn fill(
-        &mut self,
-        s: &Parameters,
-        points: &Sample,
-        viewpoint: &Vector,
-        out: &mut Evaluation,
-    ) {
-        self.rays.clear();
-        self.rays.extend(points.points().map(|x| (x - viewpoint).normalize()));
+    /// Fills `out` with the residuals of the points along the rays in which they were seen, positive before the surface,
+    /// and their derivatives.
+    pub(super) fn fill(&mut self, s: &Parameters, points: &Sample, out: &mut Evaluation) {
+        let rays = points.rays();
         self.places.clear();
         self.places.extend(points.points());
         for _ in 0..STEPS {
             self.sample.set(self.places.iter().copied());
             self.there.fill(s, &self.sample);
             for (i, place) in self.places.iter_mut().enumerate() {
-                let step = self.there.distances[i] / slope(&self.there, i, &self.rays[i]);
-                *place += self.rays[i] * step.clamp(-LONGEST, LONGEST);
+                let step = self.there.distances[i] / slope(&self.there, i, &rays[i]);
+                *place += rays[i] * step.clamp(-LONGEST, LONGEST);
             }
         }
         self.sample.set(self.places.iter().copied());
         out.fill(s, &self.sample);
         for (i, x) in points.points().enumerate() {
-            let weight = 1.0 / slope(out, i, &self.rays[i]);
-            out.distances[i] = (self.places[i] - x).dot(&self.rays[i]) + out.distances[i] * weight;
+            let weight = 1.0 / slope(out, i, &rays[i]);
+            out.distances[i] = (self.places[i] - x).dot(&rays[i]) + out.distances[i] * weight;
             for (k, row) in out.rows.iter_mut().enumerate() {
                 if s.family.has(k) {
                     row[i] *= weight;

@@ -44,7 +44,7 @@ pub(super) struct Schedule {
     pub(super) leash: f64,
     /// Lines of sight that are looked at.
     pub(super) rays: usize,
-    /// By residuals along the rays, where a viewpoint is known.
+    /// By residuals along the rays in which the points were seen; these must be known.
     pub(super) along_rays: bool,
     /// A round that gains less than this many nats ends the search.
     pub(super) tolerance: f64,
@@ -114,10 +114,11 @@ impl Workspace {
     }
 
     /// Evaluates the points for a body that is tried.
-    fn evaluate(&mut self, s: &Parameters, points: &Sample, terms: &Terms, schedule: &Schedule) {
-        match terms.viewpoint.filter(|_| schedule.along_rays) {
-            Some(viewpoint) => self.sights.fill(s, points, &viewpoint, &mut self.trial),
-            None => self.trial.fill(s, points),
+    fn evaluate(&mut self, s: &Parameters, points: &Sample, schedule: &Schedule) {
+        if schedule.along_rays {
+            self.sights.fill(s, points, &mut self.trial);
+        } else {
+            self.trial.fill(s, points);
         }
     }
 
@@ -166,7 +167,7 @@ pub(super) fn refine(
     let mut damping = 1e-3;
     let mut failures = 0;
     let n = points.len();
-    work.evaluate(&s, points, terms, schedule);
+    work.evaluate(&s, points, schedule);
     work.accept();
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
@@ -184,7 +185,7 @@ pub(super) fn refine(
                 continue;
             };
             let next = s.stepped(&step);
-            work.evaluate(&next, points, terms, schedule);
+            work.evaluate(&next, points, schedule);
             let mut after = Normal::zero();
             terms.add(&next, &work.beside(n, &mixture, schedule), &mut after);
             let after = after.cost + mixture.cost(&work.trial.distances, n);

@@ -37,7 +37,7 @@ pub(super) fn starts(
     let mut out = Vec::new();
     for frame in frames {
         let extents = Extents::of(frame, terms);
-        let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
+        let depths: &[f64] = if terms.sight == Sight::OneSide { &DEPTHS } else { &[0.0] };
         for depth in depths {
             extents.completed(*depth).bodies(frame, family, holes, &mut out);
         }
@@ -156,8 +156,10 @@ impl Extents {
             e.low[k] = quantile(&mut buffer, TAIL);
             e.high[k] = quantile(&mut buffer, 1.0 - TAIL);
         }
-        if let Some(viewpoint) = terms.viewpoint {
-            let view = (-viewpoint).normalize();
+        if !terms.eyes.is_empty() {
+            // of several views what one does not see another may
+            let views = terms.eyes.iter().map(|eye| (-eye.place).normalize());
+            let view = views.sum::<Vector>() / terms.eyes.len() as f64;
             let (mut sum, mut weights) = (0.0, 1e-9);
             for k in 0..3 {
                 e.hidden[k] = frame.axes.column(k).dot(&view);

@@ -6,8 +6,8 @@ use nalgebra::{Matrix3, Rotation3};
 use super::parameters::{EXPONENTS, Parameters, RINGS};
 use crate::Vector;
 
-/// Bodies that are nearly `s`: other axis roles, the 45 degree dual, other hidden depths, other holes.
-pub(super) fn relatives(s: &Parameters, viewpoint: Option<Vector>) -> Vec<Parameters> {
+/// Bodies that are nearly `s`: other axis roles, the 45 degree dual, other holes, and to the only `eye` other depths.
+pub(super) fn relatives(s: &Parameters, eye: Option<Vector>) -> Vec<Parameters> {
     let mut out = Vec::new();
     if s.family.is_ring() {
         out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
@@ -18,8 +18,8 @@ pub(super) fn relatives(s: &Parameters, viewpoint: Option<Vector>) -> Vec<Parame
     } else {
         out.extend(dual(s));
     }
-    if let Some(viewpoint) = viewpoint {
-        out.extend([0.6, 1.6].map(|factor| other_depth(s, &viewpoint, factor)));
+    if let Some(eye) = eye {
+        out.extend([0.6, 1.6].map(|factor| other_depth(s, &eye, factor)));
     }
     out
 }
@@ -70,8 +70,8 @@ fn other_hole(s: &Parameters, factor: f64) -> Parameters {
 }
 
 /// The axis that points most along the view scaled by `factor`, the near side kept.
-fn other_depth(s: &Parameters, viewpoint: &Vector, factor: f64) -> Parameters {
-    let view = (s.position - viewpoint).normalize();
+fn other_depth(s: &Parameters, eye: &Vector, factor: f64) -> Parameters {
+    let view = (s.position - eye).normalize();
     let local = s.rotation.inverse_transform_vector(&view);
     let k = local.iamax();
     let half = s.half_extents()[k];

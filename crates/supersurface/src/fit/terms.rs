@@ -36,16 +36,22 @@ pub(super) enum Sight {
     OneSide,
 }
 
+/// A place from which the object was seen.
+#[derive(Clone, Debug)]
+pub(super) struct Eye {
+    pub(super) place: Vector,
+    /// Points seen beside or behind the object: nothing lies between the place and them.
+    pub(super) free: Vec<Vector>,
+    /// Places a little before the object's own points: nothing lies between the place and them either.
+    /// Only a body with a hole can hide its own far wall.
+    pub(super) before: Vec<Vector>,
+}
+
 /// Everything beside the points that speaks about the body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Terms {
     pub(super) support: Option<Support>,
-    pub(super) viewpoint: Option<Vector>,
-    /// Points seen beside or behind the object: nothing lies between the viewpoint and them.
-    pub(super) free: Vec<Vector>,
-    /// Places a little before the object's own points: nothing lies between the viewpoint and them either.
-    /// Only a body with a hole can hide its own far wall.
-    pub(super) before: Vec<Vector>,
+    pub(super) eyes: Vec<Eye>,
     /// How much of the surface the points can show.
     pub(super) sight: Sight,
     /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much: a
@@ -141,18 +147,14 @@ impl Terms {
         points: &Sample,
         evaluation: &Evaluation,
     ) -> f64 {
-        let Some(viewpoint) = self.viewpoint else { return 0.0 };
+        let rays = points.rays();
         let step = (6.0 * mixture.scale).max(LEAST_HIDING);
         let away = |i: &usize| {
-            let ray = points.point(*i) - viewpoint;
             let normal = evaluation.outwards(*i);
-            normal.dot(&ray) > 0.4 * normal.norm() * ray.norm()
+            normal.dot(&rays[*i]) > 0.4 * normal.norm()
         };
-        let suspects: Vec<usize> = (0..points.len()).filter(away).collect();
-        let before = suspects.iter().map(|i| {
-            let p = points.point(*i);
-            p - (p - viewpoint).normalize() * step
-        });
+        let suspects: Vec<usize> = (0..rays.len()).filter(away).collect();
+        let before = suspects.iter().map(|i| points.point(*i) - rays[*i] * step);
         let depths = distances(s, before);
         let hidden = suspects.iter().zip(depths).filter(|(_, d)| *d < -0.25 * step);
         hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i])).sum()
@@ -218,15 +220,41 @@ impl Terms {
         found: &mut Vec<Vector>,
     ) {
         found.clear();
-        let Some(viewpoint) = self.viewpoint else { return };
-        let some = |ends: &'_ [Vector], rays: usize| {
-            let (count, taken) = (ends.len(), ends.len().min(rays));
-            (0..taken).map(move |i| i * count / taken)
-        };
-        let free = some(&self.free, rays).map(|i| &self.free[i]);
-        let before = some(&self.before, if own { rays / 2 } else { 0 }).map(|i| &self.before[i]);
-        search.deepest(s, &viewpoint, free.chain(before), found);
+        for eye in &self.eyes {
+            let [free, before] = eye.shares(rays / self.eyes.len(), own);
+            search.deepest(
+                s,
+                &eye.place,
+                some(&eye.free, free).chain(some(&eye.before, before)),
+                found,
+            );
+        }
     }
+
+    /// How many lines of sight [`Self::intrusions`] looks at.
+    pub(super) fn lines_of_sight(&self, rays: usize, own: bool) -> usize {
+        self.eyes.iter().flat_map(|eye| eye.shares(rays / self.eyes.len(), own)).sum()
+    }
+
+    /// The place of the sensor where there was but one.
+    pub(super) fn only_eye(&self) -> Option<Vector> {
+        match &self.eyes[..] {
+            [eye] => Some(eye.place),
+            _ => None,
+        }
+    }
+}
+
+impl Eye {
+    /// How many free and, with `own`, own lines of sight are looked at when they may be `rays`.
+    fn shares(&self, rays: usize, own: bool) -> [usize; 2] {
+        [self.free.len().min(rays), self.before.len().min(if own { rays / 2 } else { 0 })]
+    }
+}
+
+/// `count` of the points, evenly spread; not more than there are.
+fn some(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
+    (0..count).map(move |i| &points[i * points.len() / count])
 }
 
 /// Adds the depths of the intrusions; `rays` is how many lines of sight were looked at.

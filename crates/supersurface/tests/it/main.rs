@@ -5,6 +5,7 @@ mod closest;
 mod combined;
 mod conformance;
 mod fit_generic;
+mod fit_views;
 mod floors;
 mod golden_antipodal;
 mod golden_deform;

@@ -10,7 +10,7 @@ use super::space::Space;
 use super::supershape;
 use super::toroid::Toroid;
 use super::{GenericFit, GenericModel, GenericOptions};
-use crate::fit::centred::{Centred, is_finite, spread};
+use crate::fit::centred::{Centred, finite, is_finite, spread};
 use crate::fit::noise::{Law, Mixture};
 use crate::fit::patches::scatter;
 use crate::fit::start::quantile;
@@ -84,7 +84,7 @@ struct Cloud {
 
 impl Cloud {
     fn new(points: &[Point], needed: usize) -> Result<Self, FitError> {
-        let centred = Centred::new(points, needed, None)?;
+        let centred = Centred::new(&finite(points), needed)?;
         let space = Space::about(&centred.points);
         Ok(Self { centred, space })
     }
