@@ -37,7 +37,7 @@ pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
     warnings.extend(units(&cloud, args.units));
     let mut frame = "cloud";
     if let Some(numbers) = &args.camera_pose {
-        cloud = cloud.moved(&pose(numbers)?);
+        cloud = cloud.moved(&pose("--camera-pose", numbers)?);
         frame = "robot";
     }
     let objects = if args.segmented {
@@ -131,8 +131,8 @@ pub(crate) fn viewpoint(text: &str) -> Result<Option<Point>, Failure> {
 }
 
 /// A pose from X,Y,Z,QW,QX,QY,QZ or from the 16 numbers of a matrix, row by row.
-fn pose(numbers: &[f64]) -> Result<Pose, Failure> {
-    let wrong = |problem: String| Failure::usage(format!("--camera-pose: {problem}"));
+pub(crate) fn pose(option: &str, numbers: &[f64]) -> Result<Pose, Failure> {
+    let wrong = |problem: String| Failure::usage(format!("{option}: {problem}"));
     if !numbers.iter().all(|v| v.is_finite()) {
         return Err(wrong("a number is not finite".into()));
     }

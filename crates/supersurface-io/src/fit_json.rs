@@ -5,7 +5,7 @@
 use serde::Serialize;
 use supersurface::fit::{Covariance, Fit, Stopped};
 
-use crate::surface_row::SurfaceRow;
+use crate::surface_row::{PoseRow, SurfaceRow};
 
 /// What the field `format` says.
 pub(crate) const FORMAT: &str = "supersurface-fit";
@@ -17,12 +17,23 @@ pub struct FitHead<'a> {
     pub source: &'a str,
     /// Points that were read.
     pub points: usize,
+    /// The clouds that were merged; none for one alone.
+    pub views: &'a [ViewHead],
     /// CPU seconds of the fit alone.
     pub cpu_seconds: f64,
     /// Seconds of the fit alone by the clock.
     pub seconds: f64,
     /// What the reader and the unit check have to say.
     pub warnings: &'a [String],
+}
+
+/// One of several clouds that were merged.
+#[derive(Clone, Debug)]
+pub struct ViewHead {
+    /// Name of the cloud.
+    pub source: String,
+    /// Points that were read.
+    pub points: usize,
 }
 
 /// The JSON text of a fit, or of why there is none, over many lines.
@@ -45,6 +56,8 @@ struct File<'a> {
     status: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<&'a str>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    views: Vec<ViewRow<'a>>,
     surface: Option<SurfaceRow>,
     #[serde(flatten)]
     quality: Option<QualityRow>,
@@ -63,12 +76,27 @@ impl<'a> File<'a> {
             points: head.points,
             status: if fit.is_some() { "ok" } else { "failed" },
             error: result.err(),
+            views: head.views.iter().enumerate().map(|(k, v)| ViewRow::new(v, k, fit)).collect(),
             surface: fit.map(|f| SurfaceRow::new(&f.surface)),
             quality: fit.map(QualityRow::new),
             warnings: head.warnings,
             cpu_s: head.cpu_seconds,
             time_s: head.seconds,
         }
+    }
+}
+
+#[derive(Serialize)]
+struct ViewRow<'a> {
+    source: &'a str,
+    points: usize,
+    moved: Option<PoseRow>,
+}
+
+impl<'a> ViewRow<'a> {
+    fn new(view: &'a ViewHead, index: usize, fit: Option<&Fit>) -> Self {
+        let moved = fit.and_then(|f| f.moves.get(index)).map(PoseRow::new);
+        Self { source: &view.source, points: view.points, moved }
     }
 }
 

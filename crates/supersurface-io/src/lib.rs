@@ -47,7 +47,7 @@ pub use camera_json::{DepthCamera, read_camera};
 pub use cloud_files::{check_points_file, write_points};
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
-pub use fit_json::{FitHead, fit_json, fit_json_line};
+pub use fit_json::{FitHead, ViewHead, fit_json, fit_json_line};
 pub use grasps_json::write_grasps;
 pub use gripper::{BUILT_IN_GRIPPERS, read_gripper};
 pub use mesh_files::write_mesh;

@@ -4,13 +4,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf, is_separator};
 
 use clap::{Args, ValueEnum};
-use supersurface::fit::{Family, FitOptions};
+use supersurface::fit::{Family, FitOptions, PoseError};
 use supersurface::shape::Plane;
-use supersurface::{Point, Vector};
+use supersurface::{Point, Pose, Vector};
 
 use crate::args::Units;
 use crate::exit::Failure;
-use crate::input::viewpoint;
+use crate::input::{pose, viewpoint};
 use crate::places::Places;
 use crate::threads::MOST;
 
@@ -28,9 +28,19 @@ pub(crate) struct FitArgs {
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     model: Model,
     /// The clouds are single views from this place (in their frame and unit). `none`, the default: the objects were
-    /// seen from all around.
+    /// seen from all around. With --merge once for all, or once for each.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    viewpoint: Option<String>,
+    viewpoint: Vec<String>,
+    /// The clouds are views of one object: one surface for all.
+    #[arg(long)]
+    pub(super) merge: bool,
+    /// Pose of a view's frame in one that all share, once for each in their order: X,Y,Z,QW,QX,QY,QZ or the 16 numbers of a
+    /// matrix, row by row. Without, the clouds are in one frame.
+    #[arg(long, value_name = "POSE", requires = "merge", allow_hyphen_values = true)]
+    pose: Vec<String>,
+    /// How far the poses of all views but the first may be off (standard deviations): the views are moved to agree.
+    #[arg(long, value_name = "LENGTH,DEGREES", requires = "merge", allow_hyphen_values = true)]
+    pose_error: Option<String>,
     /// The plane on which the objects stand: A,B,C,D of Ax + By + Cz + D = 0 in the clouds' frame and unit, (A, B, C)
     /// towards the objects.
     #[arg(
@@ -91,7 +101,11 @@ impl Model {
 
 /// What is known of the clouds, in metres.
 pub(super) struct Known {
-    pub(super) viewpoint: Option<Point>,
+    /// Of each cloud, in its own frame.
+    pub(super) viewpoints: Vec<Option<Point>>,
+    /// Of each cloud; empty where all are in one frame.
+    pub(super) poses: Vec<Pose>,
+    pub(super) pose_error: PoseError,
     pub(super) support: Option<Plane>,
     pub(super) options: FitOptions,
 }
@@ -99,11 +113,23 @@ pub(super) struct Known {
 impl FitArgs {
     pub(super) fn known(&self) -> Result<Known, Failure> {
         let metres = self.units.metres();
-        let seen_from = self.viewpoint.as_deref().map(viewpoint).transpose()?.flatten();
-        let seen_from = seen_from.map(|p| p * metres);
-        if seen_from.is_some_and(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Failure::usage("--viewpoint: is too far away in this unit"));
-        }
+        let viewpoints = self.for_each("--viewpoint", &self.viewpoint, |text| {
+            let seen_from = viewpoint(text)?.map(|p| p * metres);
+            if seen_from.is_some_and(|p| p.iter().any(|v| !v.is_finite())) {
+                return Err(Failure::usage("--viewpoint: is too far away in this unit"));
+            }
+            Ok(seen_from)
+        })?;
+        let poses = match &self.pose[..] {
+            [] => Vec::new(),
+            all if all.len() == self.clouds.len() => {
+                all.iter().map(|text| self.pose(text)).collect::<Result<_, _>>()?
+            }
+            all => {
+                let counts = format!("{} are given for {} clouds", all.len(), self.clouds.len());
+                return Err(Failure::usage(format!("--pose: {counts}; each needs one")));
+            }
+        };
         let support = match self.plane.as_deref() {
             None => None,
             Some([a, b, c, d]) => {
@@ -116,7 +142,53 @@ impl FitArgs {
                 return Err(Failure::usage(problem));
             }
         };
-        Ok(Known { viewpoint: seen_from, support, options: self.model.options() })
+        let pose_error =
+            self.pose_error.as_deref().map(|text| self.pose_error(text)).transpose()?;
+        Ok(Known {
+            viewpoints,
+            poses,
+            pose_error: pose_error.unwrap_or(PoseError::NONE),
+            support,
+            options: self.model.options(),
+        })
+    }
+
+    /// What each cloud was given by an option: the one value of all, or its own where they are merged.
+    fn for_each<T: Clone + Default>(
+        &self,
+        option: &str,
+        given: &[String],
+        parse: impl Fn(&str) -> Result<T, Failure>,
+    ) -> Result<Vec<T>, Failure> {
+        let count = self.clouds.len();
+        let values: Vec<T> = given.iter().map(|text| parse(text)).collect::<Result<_, _>>()?;
+        match &values[..] {
+            [] => Ok(vec![T::default(); count]),
+            [one] => Ok(vec![one.clone(); count]),
+            all if self.merge && all.len() == count => Ok(values),
+            all => {
+                let problem = format!("{option}: given {} times for {count} clouds", all.len());
+                let mend = "give it once, or with --merge once for each";
+                Err(Failure::usage(format!("{problem}; {mend}")))
+            }
+        }
+    }
+
+    fn pose(&self, text: &str) -> Result<Pose, Failure> {
+        let mut found = pose("--pose", &numbers("--pose", text)?)?;
+        found.translation.vector *= self.units.metres();
+        Ok(found)
+    }
+
+    fn pose_error(&self, text: &str) -> Result<PoseError, Failure> {
+        match numbers("--pose-error", text)?[..] {
+            [shift, degrees] if shift >= 0.0 && (0.0..=180.0).contains(&degrees) => {
+                Ok(PoseError { shift: shift * self.units.metres(), turn: degrees.to_radians() })
+            }
+            _ => Err(Failure::usage(format!(
+                "--pose-error {text:?}: LENGTH,DEGREES, both at least 0"
+            ))),
+        }
     }
 
     /// The file of each cloud's JSON, the folder of which is made; none where none is asked for. No file is read and
@@ -129,15 +201,16 @@ impl FitArgs {
         let Some(out) = &self.output else { return Ok(vec![None; count]) };
         let mut places = Places::read(self.clouds.iter().map(PathBuf::as_path));
         let is_folder = out.is_dir() || out.to_string_lossy().ends_with(is_separator);
-        if count == 1 && !is_folder {
+        if (count == 1 || self.merge) && !is_folder {
             places.take("-o", out)?;
-            return Ok(vec![Some(out.clone())]);
+            return Ok(vec![Some(out.clone()); count]);
         }
         let shown = out.display();
         if out.exists() && !out.is_dir() {
             return Err(Failure::usage(format!("-o {shown}: {count} clouds need a folder")));
         }
-        let files: Vec<PathBuf> = self.clouds.iter().map(|c| out.join(json_name(c))).collect();
+        let named = if self.merge { &self.clouds[..1] } else { &self.clouds };
+        let files: Vec<PathBuf> = named.iter().map(|c| out.join(json_name(c))).collect();
         for (i, file) in files.iter().enumerate() {
             if let Some(k) = files[..i].iter().position(|f| f == file) {
                 let [one, other] = [k, i].map(|i| self.clouds[i].display());
@@ -153,6 +226,12 @@ impl FitArgs {
         files.iter().try_for_each(|file| places.take("-o", file))?;
         Ok(files.into_iter().map(Some).collect())
     }
+}
+
+fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|w| w.trim().parse().ok()).collect();
+    let finite = numbers.filter(|all| all.iter().all(|v: &f64| v.is_finite()));
+    finite.ok_or_else(|| Failure::usage(format!("{option} {text:?}: numbers with commas between")))
 }
 
 fn is_input(cloud: &Path) -> bool {

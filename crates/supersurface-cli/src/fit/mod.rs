@@ -2,6 +2,7 @@
 
 mod args;
 mod in_order;
+mod merged;
 mod text;
 
 use std::path::Path;
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 use supersurface::cloud::PointCloud;
 use supersurface::fit::{Fit, FitError, View, fit};
 use supersurface_io::{
-    FitHead, ReadOptions, fit_json, fit_json_line, read, shown_name, write_text,
+    FitHead, ReadOptions, ViewHead, fit_json, fit_json_line, read, shown_name, write_text,
 };
 
 pub(crate) use self::args::FitArgs;
@@ -24,14 +25,24 @@ use crate::input::{surrounds, units};
 use crate::progress::Progress;
 use crate::threads;
 
-/// One cloud and what came of it.
+/// One object and what came of it.
 struct Fitted {
     name: String,
     points: usize,
+    /// The clouds that were merged.
+    views: Vec<ViewHead>,
     result: Result<Fit, Failure>,
     cpu_seconds: f64,
     seconds: f64,
     warnings: Vec<String>,
+}
+
+impl Fitted {
+    fn failed(name: String, failure: Failure) -> Self {
+        let (views, warnings) = (Vec::new(), Vec::new());
+        let [cpu_seconds, seconds] = [0.0; 2];
+        Self { name, points: 0, views, result: Err(failure), cpu_seconds, seconds, warnings }
+    }
 }
 
 /// Fits all clouds; one that fails keeps no other from being fitted.
@@ -39,6 +50,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let known = args.known()?;
     let files = args.files()?;
     let count = args.clouds.len();
+    if args.merge {
+        return merged::run(args, &known, files[0].as_deref());
+    }
     let (pool, fewer) = threads::pool(args.threads)?;
     // one fit is done before a spinner has turned
     let mut progress = Progress::new(args.quiet || count == 1);
@@ -50,7 +64,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     pool.install(|| {
         // a bridge hands the clouds out in their order, so that results show as early as they can
         args.clouds.iter().zip(&files).enumerate().par_bridge().for_each(|(i, (cloud, file))| {
-            let fitted = fitted(cloud, args, &known);
+            let fitted = fitted(i, cloud, args, &known);
             all.add(i, done(fitted, file.as_deref(), args.json, count > 1));
         });
     });
@@ -60,59 +74,69 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     failures.next().map_or(Ok(()), |first| Err(first.and(failures)))
 }
 
-/// Reads a cloud and fits it.
-fn fitted(file: &Path, args: &FitArgs, known: &Known) -> Fitted {
-    let name = shown_name(file);
-    let read = match read(file, &ReadOptions::default()) {
-        Ok(read) => read,
-        Err(error) => {
-            let result = Err(Failure::input(error));
-            let warnings = Vec::new();
-            return Fitted { name, points: 0, result, cpu_seconds: 0.0, seconds: 0.0, warnings };
-        }
-    };
+/// A cloud in metres and its own frame, and what is odd about it.
+fn seen(
+    index: usize,
+    file: &Path,
+    args: &FitArgs,
+    known: &Known,
+) -> Result<(PointCloud, Vec<String>), Failure> {
+    let read = read(file, &ReadOptions::default()).map_err(Failure::input)?;
+    let viewpoint = known.viewpoints[index];
     let mut cloud = match args.units.metres() {
         1.0 => read.cloud,
         factor => read.cloud.scaled(factor),
     };
-    cloud.viewpoint = known.viewpoint.filter(|eye| !surrounds(&cloud, eye));
+    cloud.viewpoint = viewpoint.filter(|eye| !surrounds(&cloud, eye));
     let mut warnings = read.warnings;
     warnings.extend(units(&cloud, args.units));
-    warnings.extend(oddities(&cloud, known));
+    if viewpoint.is_some() && cloud.viewpoint.is_none() {
+        let within = "--viewpoint lies within the object, where no sensor stood";
+        warnings.push(format!("{within}: it is taken as seen from all around"));
+    }
     let left_out = cloud.points.iter().filter(|p| Some(**p) == cloud.viewpoint).count();
     if left_out > 0 {
         let what = "lie at the viewpoint, as sensors write what they did not see";
         warnings.push(format!("{left_out} points {what}: they are left out"));
     }
-    let view = View {
-        viewpoint: cloud.viewpoint,
-        support: known.support,
-        standing: known.support.is_some(),
-        ..View::all_around(&cloud.points)
+    Ok((cloud, warnings))
+}
+
+/// Reads a cloud and fits it.
+fn fitted(index: usize, file: &Path, args: &FitArgs, known: &Known) -> Fitted {
+    let name = shown_name(file);
+    let (cloud, mut warnings) = match seen(index, file, args, known) {
+        Ok(seen) => seen,
+        Err(failure) => return Fitted::failed(name, failure),
     };
+    warnings.extend(below(&cloud, known));
+    let view = view(&cloud, known);
     let (cpu, clock) = (ThreadTime::now(), Instant::now());
     let result = fit(&view, &known.options);
     let (cpu_seconds, seconds) = (cpu.elapsed().as_secs_f64(), clock.elapsed().as_secs_f64());
     let points = cloud.points.len();
     let told = |e| Failure::nothing(format!("{name}: {e}{}", mend(&e, points)));
     let result = result.map_err(told);
-    Fitted { name, points, result, cpu_seconds, seconds, warnings }
+    Fitted { name, points, views: Vec::new(), result, cpu_seconds, seconds, warnings }
 }
 
-/// What was said of the clouds and does not suit this one.
-fn oddities(cloud: &PointCloud, known: &Known) -> impl Iterator<Item = String> {
-    let within = known.viewpoint.is_some() && cloud.viewpoint.is_none();
+fn view<'a>(cloud: &'a PointCloud, known: &Known) -> View<'a> {
+    View {
+        viewpoint: cloud.viewpoint,
+        support: known.support,
+        standing: known.support.is_some(),
+        ..View::all_around(&cloud.points)
+    }
+}
+
+/// What to say of a support that most points lie below.
+fn below(cloud: &PointCloud, known: &Known) -> Option<String> {
     let beyond = known.support.is_some_and(|plane| {
         let below = cloud.points.iter().filter(|p| plane.height(p) < 0.0).count();
         2 * below > cloud.points.len()
     });
-    let within = within.then_some(
-        "--viewpoint lies within the object, where no sensor stood: it is taken as seen from all around",
-    );
-    let beyond = beyond.then_some(
-        "--plane: most points lie below it; A,B,C must point towards the object (turn all four signs)",
-    );
-    within.into_iter().chain(beyond).map(str::to_owned)
+    let mend = "A,B,C must point towards the object (turn all four signs)";
+    beyond.then(|| format!("--plane: most points lie below it; {mend}"))
 }
 
 /// What to do about a failure.
@@ -136,6 +160,7 @@ fn done(fitted: Fitted, file: Option<&Path>, as_json: bool, several: bool) -> Do
     let head = FitHead {
         source: &fitted.name,
         points: fitted.points,
+        views: &fitted.views,
         cpu_seconds: fitted.cpu_seconds,
         seconds: fitted.seconds,
         warnings: &fitted.warnings,

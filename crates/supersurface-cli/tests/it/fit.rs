@@ -370,3 +370,57 @@ fn made_clouds_are_near_to_their_truth_with_and_without_a_hint() {
     assert!(fit.json()["residual"].as_f64().unwrap() < 0.005 * size, "{}", fit.stdout);
     assert!(apart(&solid, &solid_of(&fit.stdout)) < 0.05 * size, "{}", fit.stdout);
 }
+
+/// The halves of a tin towards -x and +x, in the frames of sensors at (-0.5, 0, 0) and (0.5, 0, 0).
+fn halves() -> [String; 2] {
+    let tin = Superellipsoid::new(TIN, [0.2, 1.0]).unwrap();
+    let all = SurfaceSampler::new(&tin, None).unwrap().points(3000, 1);
+    [-1.0, 1.0].map(|side| {
+        let seen = all.iter().map(|p| p.point).filter(|p| side * p.x > 0.0);
+        cloud(seen.map(|p| [p.x - 0.5 * side, p.y, p.z]))
+    })
+}
+
+#[test]
+fn views_of_one_object_are_merged() {
+    let [left, right] = halves();
+    let (folder, files) = folder("fit_merge", &[("left.xyz", &left), ("right.xyz", &right)]);
+    let [left, right] = [0, 1].map(|i| files[i].to_str().unwrap());
+    let seen = ["--viewpoint", "0,0,0", "--model", "superellipsoid", "--json"];
+    let merged = |poses: &[&str], more: &[&str]| {
+        let mut args = vec!["fit", left, right, "--merge"];
+        poses.iter().for_each(|pose| args.extend(["--pose", pose]));
+        run(&[&args, &seen[..], more].concat())
+    };
+    let exact = ["-0.5,0,0,1,0,0,0", "0.5,0,0,1,0,0,0"];
+    let fit = merged(&exact, &[]).ended(0).json();
+    let mut found = axes(&fit);
+    found.sort_by(f64::total_cmp);
+    for (found, true_axis) in found.into_iter().zip(TIN) {
+        assert!((found / true_axis - 1.0).abs() < 1e-2, "{fit}");
+    }
+    let points = [0, 1].map(|k| fit["views"][k]["points"].as_u64().unwrap());
+    assert_eq!(points[0] + points[1], 3000);
+    assert_eq!(fit["views"][1]["moved"]["position"], json!([0.0, 0.0, 0.0]));
+    // the second view is 4 mm off: told so, it is moved back
+    let off = ["-0.5,0,0,1,0,0,0", "0.5,0.004,0,1,0,0,0"];
+    let out = folder.join("both.json");
+    let told = ["--pose-error", "0.003,1", "-o", out.to_str().unwrap()];
+    let fit = merged(&off, &told).ended(0).json();
+    let back = fit["views"][1]["moved"]["position"][1].as_f64().unwrap();
+    assert!((back + 0.004).abs() < 1e-3, "{}", fit["views"]);
+    assert_eq!(read_json(&out)["views"], fit["views"]);
+    for (poses, more, problem) in [
+        (&exact[..1], &[][..], "--pose: 1 are given for 2 clouds"),
+        (&["1,2", "3,4"][..], &[], "--pose: 2 numbers"),
+        (&["a,b", "c"][..], &[], "--pose \"a,b\""),
+        (&exact[..], &["--pose-error", "1"][..], "--pose-error"),
+        (&exact[..], &["--pose-error", "-1,2"][..], "--pose-error"),
+        (&exact[..], &["--viewpoint", "1,1,1", "--viewpoint", "0,1,1"][..], "--viewpoint"),
+    ] {
+        assert!(merged(poses, more).ended(2).stderr.contains(problem), "{problem}");
+    }
+    assert!(run(&["fit", left, "--pose", exact[0]]).ended(2).stdout.is_empty());
+    let lost = run(&["fit", left, "nowhere.ply", "--merge", "--json"]).ended(3);
+    assert_eq!(lost.json()["status"], "failed");
+}
