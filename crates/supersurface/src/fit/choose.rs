@@ -4,10 +4,11 @@ use super::Effort;
 use super::centred::spread;
 use super::columns::{Evaluation, Sample, distances};
 use super::finish::{BLURRED, COMPARING};
+use super::misfit::correlation;
 use super::parameters::Family;
 use super::prepare::Normalised;
 use super::rays::Rays;
-use super::search::{EXACT, best, schedule};
+use super::search::{best, schedule};
 use super::smeared::smeared_cost;
 use super::solver::{Hypothesis, Workspace, refine};
 use super::start::quantile;
@@ -51,7 +52,7 @@ pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f6
     };
     let deformed = || families.iter().filter(|f| f.is_deformed()).map(|f| best(cloud, *f));
     let rivals: Vec<Hypothesis> = match plain {
-        Some((h, margin)) if !is_misfit(cloud, &h) => return (h, margin),
+        Some((h, margin)) if correlation(cloud, &h) < CORRELATED => return (h, margin),
         Some((h, _)) => {
             let cleaner = |d: &Hypothesis| d.mixture.scale < CLEANER * h.mixture.scale;
             std::iter::once(h).chain(deformed().filter(cleaner)).collect()
@@ -64,33 +65,6 @@ pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f6
         }
         None => (best(cloud, Family::Superellipsoid), 0.0),
     }
-}
-
-/// True when deviations of neighbours go together: the body has not the points' shape.
-fn is_misfit(cloud: &Normalised, h: &Hypothesis) -> bool {
-    const PROBED: usize = 300;
-    if h.mixture.scale < EXACT {
-        return false;
-    }
-    let deviations = distances(&h.parameters, cloud.points.iter().copied());
-    let near = 3.0 * h.mixture.scale;
-    let on: Vec<(Vector, f64)> = cloud
-        .points
-        .iter()
-        .zip(deviations)
-        .filter(|(_, d)| d.abs() < near)
-        .map(|(p, d)| (*p, d))
-        .collect();
-    let (mut product, mut square) = (0.0, 0.0);
-    for (p, d) in on.iter().step_by(on.len().div_ceil(PROBED).max(1)) {
-        let apart = |q: &(Vector, f64)| (q.0 - p).norm_squared();
-        let others = on.iter().filter(|q| apart(q) > 0.0);
-        if let Some((_, other)) = others.min_by(|a, b| apart(a).total_cmp(&apart(b))) {
-            product += d * other;
-            square += d * d;
-        }
-    }
-    product > CORRELATED * square
 }
 
 /// The hypothesis with the most evidence and its margin over the next.

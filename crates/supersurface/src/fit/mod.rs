@@ -34,6 +34,7 @@ mod free_space;
 pub mod generic;
 mod judge;
 mod kernel;
+mod misfit;
 mod noise;
 mod parameters;
 mod patches;

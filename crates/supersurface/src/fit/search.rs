@@ -3,13 +3,15 @@
 use super::Effort;
 use super::columns::Sample;
 use super::finish::{COVERED, coverage, finish};
+use super::misfit::correlation;
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
 use super::prepare::Normalised;
 use super::solver::{Hypothesis, Schedule, Stopped, Workspace, refine};
-use super::start::{Frame, other_frames, starts};
-use super::switch::relatives;
+use super::start::{Frame, other_frames, starts, turned_frames};
+use super::switch::{dual, relatives};
 use super::terms::{Sight, Terms};
+use crate::Vector;
 
 /// Lines of sight that are looked at beside the middle set of points.
 const MIDDLE_RAYS: usize = 24;
@@ -29,6 +31,10 @@ const LEASH: [f64; 2] = [f64::INFINITY, 1.5];
 const SWITCHES: [usize; 2] = [1, 2];
 /// Share of points that a body may leave out without doubt.
 const LEFT_OUT: f64 = 0.2;
+/// Correlation of neighbouring deviations on a single view (whose noise comes in steps) above which the search went astray.
+const ASTRAY: f64 = 0.5;
+/// Least scale from which a body that was set to another shape settles.
+const SHAKEN: f64 = 0.05;
 /// Two hypotheses whose costs differ by less than this many nats are one.
 const SAME: f64 = 0.5;
 
@@ -43,6 +49,13 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     if pool.is_empty() {
         pool.push(begin(&Parameters::ball(family), &cloud.terms));
     }
+    let found = finish(cloud, &pool, &mut work);
+    let thorough_view = cloud.terms.sight == Sight::OneSide && cloud.effort == Effort::Thorough;
+    if !thorough_view || correlation(cloud, &found) < ASTRAY {
+        return found;
+    }
+    let points: Vec<Vector> = cloud.coarse.points().collect();
+    search(cloud, family, &turned_frames(&points, &cloud.terms), &mut pool, &mut work);
     finish(cloud, &pool, &mut work)
 }
 
@@ -83,9 +96,17 @@ fn search(
             let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
             *h = refine(h, points, terms, &schedule, work);
         }
-        ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        ranked.dedup_by(|b, a| is_same(a, b));
-        ranked.truncate(kept);
+        keep(&mut ranked, kept);
+    }
+    if family.is_ring() && !sketch {
+        // a ring whose section is turned by 45 degrees hardly finds its way
+        let duals: Vec<Hypothesis> = ranked.iter().filter_map(turned_by_half).collect();
+        ranked.extend(duals.iter().map(|h| {
+            let schedule = schedule(6, rays, (2.0 * h.mixture.scale).max(SHAKEN));
+            let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
+            refine(h, &cloud.coarse, terms, &schedule, work)
+        }));
+        keep(&mut ranked, KEPT);
     }
     for h in &ranked {
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
@@ -98,7 +119,7 @@ fn search(
         let Some(best) = pool.first().copied() else { return };
         for relative in relatives(&best.parameters, terms.only_eye()) {
             let start = Hypothesis { parameters: relative, ..best };
-            let scale = (2.0 * best.mixture.scale).max(0.05);
+            let scale = (2.0 * best.mixture.scale).max(SHAKEN);
             let schedule = schedule(8, MIDDLE_RAYS, scale);
             add(pool, refine(&start, &cloud.middle, terms, &schedule, work));
         }
@@ -106,6 +127,17 @@ fn search(
             break;
         }
     }
+}
+
+/// Keeps the best of a list without doubles.
+fn keep(ranked: &mut Vec<Hypothesis>, kept: usize) {
+    ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    ranked.dedup_by(|b, a| is_same(a, b));
+    ranked.truncate(kept);
+}
+
+fn turned_by_half(h: &Hypothesis) -> Option<Hypothesis> {
+    Some(Hypothesis { parameters: dual(&h.parameters)?, ..*h })
 }
 
 /// True for a body on which all points lie.

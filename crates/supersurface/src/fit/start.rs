@@ -5,6 +5,8 @@
 //! two axes are alike, a start turned by 45 degrees. Semi-axes are half extents between low quantiles; the
 //! side that the camera does not see is completed along the viewing direction.
 
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
+
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
 use super::parameters::{Family, Parameters, RINGS};
@@ -72,6 +74,21 @@ pub(super) fn other_frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
     out
 }
 
+/// The frame of all points turned to all sides: by 45 degrees about its axes and by 60 about the diagonals, which no axis
+/// of a cube is farther from.
+pub(super) fn turned_frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+    let axes = axes_of(&scatter(points.iter()));
+    let about_axes = [Vector::x(), Vector::y(), Vector::z()].map(|way| way * FRAC_PI_4);
+    let diagonals = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let about_diagonals = diagonals.map(|[x, y]| Vector::new(x, y, 1.0).normalize() * FRAC_PI_3);
+    let mut out = Vec::new();
+    for turn in about_axes.into_iter().chain(about_diagonals) {
+        let turned = axes * Rotation3::new(turn).matrix();
+        push(&mut out, turned, points.to_vec(), terms);
+    }
+    out
+}
+
 /// Frames by the given shares of the most flat and dense neighbourhoods and of the flattest.
 fn by_patches(out: &mut Vec<Frame>, patches: &[Patch], [firm, flat]: [f64; 2], terms: &Terms) {
     let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
@@ -124,7 +141,7 @@ fn upright(points: &[Vector], normal: &Vector) -> Matrix3<f64> {
     let mut best = (f64::INFINITY, 0.0);
     for degrees in (0..90).step_by(6) {
         let angle = f64::from(degrees).to_radians();
-        let area = width(angle) * width(angle + std::f64::consts::FRAC_PI_2);
+        let area = width(angle) * width(angle + FRAC_PI_2);
         if area < best.0 {
             best = (area, angle);
         }
@@ -238,7 +255,7 @@ fn deformed(start: &Parameters, height: f64, out: &mut Vec<Parameters>) {
 /// The start turned by 45 degrees about its z axis.
 fn turned(start: &Parameters, axes: [f64; 3]) -> Parameters {
     let mean = 0.55 * (axes[0] + axes[1]);
-    let turn = Rotation3::new(Vector::z() * std::f64::consts::FRAC_PI_4);
+    let turn = Rotation3::new(Vector::z() * FRAC_PI_4);
     Parameters {
         log_axes: [mean.ln(), (0.97 * mean).ln(), axes[2].ln()],
         rotation: start.rotation * turn,

@@ -11,6 +11,7 @@ pub(super) fn relatives(s: &Parameters, eye: Option<Vector>) -> Vec<Parameters> 
     let mut out = Vec::new();
     if s.family.is_ring() {
         out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
+        out.extend(dual(s));
     } else if !s.family.is_deformed() {
         let others = [1, 2].map(|shift| cycled(s, shift));
         out.extend(others);
@@ -39,7 +40,7 @@ fn cycled(s: &Parameters, shift: usize) -> Parameters {
 
 /// A section with exponent `2 - ε2`, turned by 45 degrees: for equal axes it has nearly the same outline,
 /// `a' = a 2^((1 - ε2)/2)`. `None` where the axes differ too much.
-fn dual(s: &Parameters) -> Option<Parameters> {
+pub(super) fn dual(s: &Parameters) -> Option<Parameters> {
     let difference = (s.log_axes[0] - s.log_axes[1]).abs();
     if difference > 0.5 {
         return None;
