@@ -10,6 +10,7 @@ use super::prepare::Normalised;
 use super::search::EXACT;
 use super::solver::Hypothesis;
 use crate::Vector;
+use crate::numeric::lanes::WIDTH;
 
 /// Points whose neighbours are sought.
 const PROBED: usize = 300;
@@ -39,12 +40,23 @@ pub(super) fn correlation(cloud: &Normalised, h: &Hypothesis) -> f64 {
             // not the point itself
             *s = if apart > 0.0 { apart } else { f64::INFINITY };
         }
-        let least =
-            squares.iter().fold(f64::INFINITY, |least: f64, s| if *s < least { *s } else { least });
+        let least = least(&squares);
         if let Some(nearest) = squares.iter().position(|s| *s == least && s.is_finite()) {
             product += d * on[nearest].1;
             square += d * d;
         }
     }
     product / square
+}
+
+/// The least of the values, eight side by side.
+fn least(values: &[f64]) -> f64 {
+    let mut lanes = [f64::INFINITY; WIDTH];
+    let (blocks, rest) = values.as_chunks::<WIDTH>();
+    for block in blocks {
+        for (least, v) in lanes.iter_mut().zip(block) {
+            *least = if v < least { *v } else { *least };
+        }
+    }
+    lanes.iter().chain(rest).fold(f64::INFINITY, |least, v| least.min(*v))
 }
