@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf, is_separator};
 
 use clap::{Args, ValueEnum};
-use supersurface::fit::{Family, FitOptions};
+use supersurface::fit::{Completion, Family, FitOptions};
 use supersurface::shape::Plane;
 use supersurface::{Point, Vector};
 
@@ -41,6 +41,9 @@ pub(crate) struct FitArgs {
         allow_hyphen_values = true
     )]
     plane: Option<Vec<f64>>,
+    /// From what guess of the side that a single view hides the search begins too; the seen points decide alone.
+    #[arg(long, value_enum, value_name = "BY", default_value_t = Complete::None)]
+    complete: Complete,
     /// Unit of the clouds' coordinates. Results are in metres.
     #[arg(long, value_enum, default_value_t = Units::M)]
     pub(super) units: Units,
@@ -73,6 +76,24 @@ enum Model {
     Twisted,
     /// Horn.
     TaperedBent,
+}
+
+/// Guesses of the hidden side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Complete {
+    /// None but a few depths.
+    None,
+    /// The seen points mirrored at a plane that faces the sensor.
+    Mirror,
+}
+
+impl Complete {
+    const fn by(self) -> Completion {
+        match self {
+            Self::None => Completion::Nothing,
+            Self::Mirror => Completion::Mirror,
+        }
+    }
 }
 
 impl Model {
@@ -116,7 +137,11 @@ impl FitArgs {
                 return Err(Failure::usage(problem));
             }
         };
-        Ok(Known { viewpoint: seen_from, support, options: self.model.options() })
+        if self.complete == Complete::Mirror && seen_from.is_none() {
+            return Err(Failure::usage("--complete mirror needs --viewpoint"));
+        }
+        let options = FitOptions { complete: self.complete.by(), ..self.model.options() };
+        Ok(Known { viewpoint: seen_from, support, options })
     }
 
     /// The file of each cloud's JSON, the folder of which is made; none where none is asked for. No file is read and

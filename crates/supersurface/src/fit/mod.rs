@@ -34,6 +34,7 @@ mod free_space;
 pub mod generic;
 mod judge;
 mod kernel;
+mod mirror;
 mod noise;
 mod parameters;
 mod patches;
@@ -52,11 +53,13 @@ mod terms;
 
 pub use covariance::Covariance;
 pub use free_space::{free_points, outline_points};
+pub use mirror::{Completion, Mirror, mirrored};
 pub use parameters::Family;
 pub use solver::Stopped;
 
 use self::choose::choose;
 use self::judge::judge;
+use self::mirror::completed_frames;
 use self::prepare::Normalised;
 use self::search::best;
 use crate::Point;
@@ -93,6 +96,8 @@ pub struct FitOptions {
     pub families: &'static [Family],
     /// How much time a fit may take.
     pub effort: Effort,
+    /// From what guess of the unseen side of a single view a fit begins too.
+    pub complete: Completion,
 }
 
 /// How much time a fit may take: all else is the same.
@@ -107,20 +112,23 @@ pub enum Effort {
 
 impl FitOptions {
     /// Every family.
-    pub const ALL: Self = Self { families: &Family::ALL, effort: Effort::Thorough };
+    pub const ALL: Self = Self::among(&Family::ALL);
 
     /// Superellipsoids and supertoroids: what grasp tables know.
-    pub const UNDEFORMED: Self =
-        Self { families: &[Family::Superellipsoid, Family::Supertoroid], effort: Effort::Thorough };
+    pub const UNDEFORMED: Self = Self::among(&[Family::Superellipsoid, Family::Supertoroid]);
 
     /// The same in less time.
     pub const fn quick(self) -> Self {
         Self { effort: Effort::Quick, ..self }
     }
 
+    const fn among(families: &'static [Family]) -> Self {
+        Self { families, effort: Effort::Thorough, complete: Completion::Nothing }
+    }
+
     /// One family.
     pub const fn only(family: Family) -> Self {
-        Self { families: family.alone(), effort: Effort::Thorough }
+        Self::among(family.alone())
     }
 }
 
@@ -206,7 +214,10 @@ pub enum FitError {
 
 /// Fits one supersurface.
 pub fn fit(view: &View<'_>, options: &FitOptions) -> Result<Fit, FitError> {
-    let cloud = Normalised::new(view, options.effort)?;
+    let mut cloud = Normalised::new(view, options.effort)?;
+    if options.complete == Completion::Mirror {
+        cloud.frames.extend(completed_frames(view, &cloud));
+    }
     let (hypothesis, margin) = match options.families {
         [family] => (best(&cloud, *family), 0.0),
         families => choose(&cloud, families),

@@ -37,7 +37,8 @@ pub(super) fn starts(
     let mut out = Vec::new();
     for frame in frames {
         let extents = Extents::of(frame, terms);
-        let depths: &[f64] = if terms.viewpoint.is_some() { &DEPTHS } else { &[0.0] };
+        let hidden = terms.viewpoint.is_some() && !frame.whole;
+        let depths: &[f64] = if hidden { &DEPTHS } else { &[0.0] };
         for depth in depths {
             extents.completed(*depth).bodies(frame, family, holes, &mut out);
         }
@@ -49,6 +50,15 @@ pub(super) fn starts(
 pub(super) struct Frame {
     axes: Matrix3<f64>,
     points: Vec<Vector>,
+    /// True where the points show all sides.
+    whole: bool,
+}
+
+/// Frames of points that show all sides, though the cloud does not.
+pub(super) fn whole_frames(points: &[Vector]) -> Vec<Frame> {
+    let terms = Terms { sight: Sight::OneSide, ..Terms::default() };
+    let frames = frames(points, &terms).into_iter();
+    frames.map(|f| Frame { whole: true, ..f }).collect()
 }
 
 /// Frames for normalised points, without near duplicates.
@@ -93,7 +103,7 @@ fn push(out: &mut Vec<Frame>, axes: Matrix3<f64>, points: Vec<Vector>, terms: &T
         (0..3).all(|i| (0..3).any(|j| alike(i, j)))
     };
     if terms.sight != Sight::OneSide || !out.iter().any(same) {
-        out.push(Frame { axes, points });
+        out.push(Frame { axes, points, whole: false });
     }
 }
 
@@ -156,7 +166,7 @@ impl Extents {
             e.low[k] = quantile(&mut buffer, TAIL);
             e.high[k] = quantile(&mut buffer, 1.0 - TAIL);
         }
-        if let Some(viewpoint) = terms.viewpoint {
+        if let Some(viewpoint) = terms.viewpoint.filter(|_| !frame.whole) {
             let view = (-viewpoint).normalize();
             let (mut sum, mut weights) = (0.0, 1e-9);
             for k in 0..3 {
