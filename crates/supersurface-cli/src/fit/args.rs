@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf, is_separator};
 
 use clap::{Args, ValueEnum};
-use supersurface::fit::{Family, FitOptions, PoseError};
+use supersurface::fit::{Completion, Family, FitOptions, PoseError};
 use supersurface::shape::Plane;
 use supersurface::{Point, Pose, Vector};
 
@@ -51,6 +51,9 @@ pub(crate) struct FitArgs {
         allow_hyphen_values = true
     )]
     plane: Option<Vec<f64>>,
+    /// From what guess of the side that a single view hides the search begins too; the seen points decide alone.
+    #[arg(long, value_enum, value_name = "BY", default_value_t = Complete::None)]
+    complete: Complete,
     /// Unit of the clouds' coordinates. Results are in metres.
     #[arg(long, value_enum, default_value_t = Units::M)]
     pub(super) units: Units,
@@ -83,6 +86,24 @@ enum Model {
     Twisted,
     /// Horn.
     TaperedBent,
+}
+
+/// Guesses of the hidden side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Complete {
+    /// None but a few depths.
+    None,
+    /// The seen points mirrored at a plane that faces the sensor.
+    Mirror,
+}
+
+impl Complete {
+    const fn by(self) -> Completion {
+        match self {
+            Self::None => Completion::Nothing,
+            Self::Mirror => Completion::Mirror,
+        }
+    }
 }
 
 impl Model {
@@ -144,12 +165,15 @@ impl FitArgs {
         };
         let pose_error =
             self.pose_error.as_deref().map(|text| self.pose_error(text)).transpose()?;
+        if self.complete == Complete::Mirror && viewpoints.iter().all(Option::is_none) {
+            return Err(Failure::usage("--complete mirror needs --viewpoint"));
+        }
         Ok(Known {
             viewpoints,
             poses,
             pose_error: pose_error.unwrap_or(PoseError::NONE),
             support,
-            options: self.model.options(),
+            options: FitOptions { complete: self.complete.by(), ..self.model.options() },
         })
     }
 

@@ -256,6 +256,8 @@ fn what_is_said_of_the_view_is_checked() {
         ("--plane", "0,0,nan,1", "normal"),
         ("--plane", "0,0,1,inf", "offset"),
         ("--threads", "0", "threads"),
+        ("--complete", "mirror", "--viewpoint"),
+        ("--complete", "guess", "mirror"),
     ] {
         let ran = run(&["fit", tin, option, value]).ended(2);
         assert!(ran.stderr.contains(wanted), "{option} {value}: {}", ran.stderr);
@@ -283,6 +285,28 @@ fn what_is_said_of_the_view_is_checked() {
     let ran = run_on(&seen, zeros.as_bytes()).ended(0);
     assert!(ran.stderr.contains("200 points lie at the viewpoint"), "{}", ran.stderr);
     assert!(ran.json()["residual"].as_f64().unwrap() < 1e-4, "{}", ran.stdout);
+}
+
+#[test]
+fn a_view_completed_by_symmetry_is_judged_by_what_was_seen() {
+    let eye = Point::new(0.3, -0.4, 0.3);
+    let tin = Superellipsoid::new(TIN, [0.2, 1.0]).unwrap();
+    let seen = (0..1600).filter_map(|k| {
+        let up = -1.5 + 3.0 * f64::from(k % 40) / 39.0;
+        let around = std::f64::consts::TAU * f64::from(k / 40) / 40.0;
+        let p = tin.point(up, around);
+        tin.normal(up, around).filter(|n| n.dot(&(eye - p)) > 0.0).map(|_| [p.x, p.y, p.z])
+    });
+    let seen: Vec<_> = seen.collect();
+    let view = ["fit", "-", "--json", "--viewpoint", "0.3,-0.4,0.3", "--plane", "0,0,1,0.05"];
+    let completed = [&view[..], &["--complete", "mirror"]].concat();
+    let fit = run_on(&completed, cloud(seen.iter().copied()).as_bytes()).ended(0).json();
+    assert_eq!(fit["points"], seen.len());
+    for (found, true_axis) in axes(&fit).into_iter().zip(TIN) {
+        assert!((found / true_axis - 1.0).abs() < 0.02, "{fit}");
+    }
+    assert!(fit["residual"].as_f64().unwrap() < 1e-4, "{fit}");
+    assert!(fit["inlier_share"].as_f64().unwrap() > 0.95, "{fit}");
 }
 
 #[test]

@@ -104,19 +104,19 @@ pub(super) fn outline(points: &[Vector], viewpoint: &Vector) -> Vec<Vector> {
 }
 
 /// The object as the sensor sees it: a pinhole picture towards its middle.
-struct Picture {
+pub(super) struct Picture {
     viewpoint: Point,
     forward: Vector,
     right: Vector,
     down: Vector,
     corner: [f64; 2],
     cell: f64,
-    width: usize,
-    height: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
 }
 
 impl Picture {
-    fn of(cloud: &PointCloud, object: &[u32]) -> Option<Self> {
+    pub(super) fn of(cloud: &PointCloud, object: &[u32]) -> Option<Self> {
         let viewpoint = cloud.viewpoint?;
         let rays = || {
             let points = object.iter().filter_map(|i| cloud.points.get(*i as usize));
@@ -156,7 +156,7 @@ impl Picture {
     }
 
     #[inline]
-    fn cell(&self, p: &Point) -> Option<usize> {
+    pub(super) fn cell(&self, p: &Point) -> Option<usize> {
         let r = p - self.viewpoint;
         let z = r.dot(&self.forward);
         if z.is_nan() || z <= 0.0 {

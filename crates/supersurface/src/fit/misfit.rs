@@ -2,7 +2,7 @@
 //! neighbours deviate alike. So their correlation is measured:
 //!
 //! ```text
-//! ρ = Σ d(x) d(nearest to x) / Σ d(x)²    over points near the surface
+//! ρ = Σ (d(x) - m) (d(nearest to x) - m) / Σ (d(x) - m)²    over points near the surface, m their mean
 //! ```
 
 use super::columns::distances;
@@ -29,6 +29,8 @@ pub(super) fn correlation(cloud: &Normalised, h: &Hypothesis) -> f64 {
         .filter(|(_, d)| d.abs() < near)
         .map(|(p, d)| (*p, d))
         .collect();
+    // noise lies outside of a convex body on the average
+    let mean = on.iter().map(|q| q.1).sum::<f64>() / on.len().max(1) as f64;
     // columns, so that the search vectorises
     let columns: [Vec<f64>; 3] = std::array::from_fn(|k| on.iter().map(|q| q.0[k]).collect());
     let mut squares = vec![0.0; on.len()];
@@ -42,8 +44,8 @@ pub(super) fn correlation(cloud: &Normalised, h: &Hypothesis) -> f64 {
         }
         let least = least(&squares);
         if let Some(nearest) = squares.iter().position(|s| *s == least && s.is_finite()) {
-            product += d * on[nearest].1;
-            square += d * d;
+            product += (d - mean) * (on[nearest].1 - mean);
+            square += (d - mean) * (d - mean);
         }
     }
     product / square

@@ -34,6 +34,7 @@ mod free_space;
 pub mod generic;
 mod judge;
 mod kernel;
+mod mirror;
 mod misfit;
 mod noise;
 mod parameters;
@@ -56,6 +57,7 @@ use nalgebra::Isometry3;
 
 pub use covariance::Covariance;
 pub use free_space::{free_points, outline_points};
+pub use mirror::{Completion, Mirror, mirrored};
 pub use parameters::Family;
 pub use poses::PoseError;
 pub use solver::Stopped;
@@ -63,13 +65,14 @@ pub use solver::Stopped;
 use self::centred::is_finite;
 use self::choose::choose;
 use self::judge::judge;
+use self::mirror::completed_frames;
 use self::poses::{MovedView, moves};
 use self::prepare::Normalised;
 use self::search::best;
 use self::solver::Hypothesis;
-use crate::Point;
 use crate::shape::{InvalidShape, Plane, Posed};
 use crate::surface::Surface;
+use crate::{Point, Vector};
 
 /// What was seen of an object.
 #[derive(Clone, Copy, Debug)]
@@ -88,6 +91,11 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    /// The points that count.
+    fn counted(&self) -> Vec<Vector> {
+        self.points.iter().filter(|p| self.counts(p)).map(|p| p.coords).collect()
+    }
+
     /// True for points that count: where a sensor saw nothing it may have written its own place.
     fn counts(&self, p: &Point) -> bool {
         is_finite(&p.coords) && Some(*p) != self.viewpoint
@@ -106,6 +114,8 @@ pub struct FitOptions {
     pub families: &'static [Family],
     /// How much time a fit may take.
     pub effort: Effort,
+    /// From what guess of the unseen side of a single view a fit begins too.
+    pub complete: Completion,
 }
 
 /// How much time a fit may take: all else is the same.
@@ -120,20 +130,23 @@ pub enum Effort {
 
 impl FitOptions {
     /// Every family.
-    pub const ALL: Self = Self { families: &Family::ALL, effort: Effort::Thorough };
+    pub const ALL: Self = Self::among(&Family::ALL);
 
     /// Superellipsoids and supertoroids: what grasp tables know.
-    pub const UNDEFORMED: Self =
-        Self { families: &[Family::Superellipsoid, Family::Supertoroid], effort: Effort::Thorough };
+    pub const UNDEFORMED: Self = Self::among(&[Family::Superellipsoid, Family::Supertoroid]);
 
     /// The same in less time.
     pub const fn quick(self) -> Self {
         Self { effort: Effort::Quick, ..self }
     }
 
+    const fn among(families: &'static [Family]) -> Self {
+        Self { families, effort: Effort::Thorough, complete: Completion::Nothing }
+    }
+
     /// One family.
     pub const fn only(family: Family) -> Self {
-        Self { families: family.alone(), effort: Effort::Thorough }
+        Self::among(family.alone())
     }
 }
 
@@ -250,7 +263,10 @@ pub fn fit_views(
     options: &FitOptions,
 ) -> Result<Fit, FitError> {
     errors.iter().try_for_each(PoseError::check)?;
-    let cloud = Normalised::new(views, options.effort)?;
+    let mut cloud = Normalised::new(views, options.effort)?;
+    if let ([view], Completion::Mirror) = (views, options.complete) {
+        cloud.frames.extend(completed_frames(view, &cloud));
+    }
     let (hypothesis, margin) = recover(&cloud, options);
     let still = vec![Isometry3::identity(); views.len()];
     if views.len() < 2 || errors.iter().all(|e| *e == PoseError::NONE) {

@@ -48,7 +48,7 @@ impl Normalised {
     pub(super) fn new(views: &[View<'_>], effort: Effort) -> Result<Self, FitError> {
         let (mut points, mut seen_by) = (Vec::new(), Vec::new());
         for (k, view) in views.iter().enumerate() {
-            points.extend(view.points.iter().filter(|p| view.counts(p)).map(|p| p.coords));
+            points.extend(view.counted());
             seen_by.resize(points.len(), k);
         }
         let cloud = Centred::new(&points, LEAST_POINTS)?;

@@ -39,7 +39,8 @@ pub(super) fn starts(
     let mut out = Vec::new();
     for frame in frames {
         let extents = Extents::of(frame, terms);
-        let depths: &[f64] = if terms.sight == Sight::OneSide { &DEPTHS } else { &[0.0] };
+        let hidden = terms.sight == Sight::OneSide && !frame.whole;
+        let depths: &[f64] = if hidden { &DEPTHS } else { &[0.0] };
         for depth in depths {
             extents.completed(*depth).bodies(frame, family, holes, &mut out);
         }
@@ -51,6 +52,15 @@ pub(super) fn starts(
 pub(super) struct Frame {
     axes: Matrix3<f64>,
     points: Vec<Vector>,
+    /// True where the points show all sides.
+    whole: bool,
+}
+
+/// Frames of points that show all sides, though the cloud does not.
+pub(super) fn whole_frames(points: &[Vector]) -> Vec<Frame> {
+    let terms = Terms { sight: Sight::OneSide, ..Terms::default() };
+    let frames = frames(points, &terms).into_iter();
+    frames.map(|f| Frame { whole: true, ..f }).collect()
 }
 
 /// Frames for normalised points, without near duplicates.
@@ -110,7 +120,7 @@ fn push(out: &mut Vec<Frame>, axes: Matrix3<f64>, points: Vec<Vector>, terms: &T
         (0..3).all(|i| (0..3).any(|j| alike(i, j)))
     };
     if terms.sight != Sight::OneSide || !out.iter().any(same) {
-        out.push(Frame { axes, points });
+        out.push(Frame { axes, points, whole: false });
     }
 }
 
@@ -173,7 +183,7 @@ impl Extents {
             e.low[k] = quantile(&mut buffer, TAIL);
             e.high[k] = quantile(&mut buffer, 1.0 - TAIL);
         }
-        if !terms.eyes.is_empty() {
+        if !terms.eyes.is_empty() && !frame.whole {
             // of several views what one does not see another may
             let views = terms.eyes.iter().map(|eye| (-eye.place).normalize());
             let view = views.sum::<Vector>() / terms.eyes.len() as f64;

@@ -26,7 +26,7 @@ pub(super) fn relatives(s: &Parameters, eye: Option<Vector>) -> Vec<Parameters> 
 }
 
 /// The same box with its axes in other roles and the mean exponent.
-fn cycled(s: &Parameters, shift: usize) -> Parameters {
+pub(super) fn cycled(s: &Parameters, shift: usize) -> Parameters {
     let order = [shift % 3, (shift + 1) % 3, (shift + 2) % 3];
     let m = s.rotation.matrix();
     let columns = order.map(|k| Vector::from(m.column(k)));
