@@ -75,12 +75,13 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     for i in 0..cloud.fine.len() {
         let d = at.distances[i];
         let w = h.mixture.weight(d);
+        let c = h.mixture.curvature(d);
         for (j, row) in index.iter().enumerate() {
             let a = at.rows[*row][i];
             for (k, column) in index[..=j].iter().enumerate() {
-                let product = w * a * at.rows[*column][i];
-                information[(j, k)] += product;
-                scatter[(j, k)] += product * w * d * d;
+                let product = a * at.rows[*column][i];
+                information[(j, k)] += product * c;
+                scatter[(j, k)] += product * w * w * d * d;
             }
         }
     }
