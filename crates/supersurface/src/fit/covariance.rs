@@ -72,12 +72,14 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let n = index.len();
     let mut information = DMatrix::<f64>::zeros(n, n);
     let mut scatter = information.clone();
+    let mut pull = vec![0.0; n];
     for i in 0..cloud.fine.len() {
         let d = at.distances[i];
         let w = h.mixture.weight(d);
         let c = h.mixture.curvature(d);
         for (j, row) in index.iter().enumerate() {
             let a = at.rows[*row][i];
+            pull[j] += w * d * a;
             for (k, column) in index[..=j].iter().enumerate() {
                 let product = a * at.rows[*column][i];
                 information[(j, k)] += product * c;
@@ -85,20 +87,28 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
             }
         }
     }
+    let drawn = matches!(cloud.terms.sight, Sight::AllAround { .. }) && h.mixture.scale > 0.018;
+    let trust: f64 = std::env::var(if drawn { "RHO" } else { "RHOV" }).map_or(0.0, |v| v.parse().unwrap());
     // all points count, not only those that were looked at
     let more = cloud.total as f64 / cloud.fine.len() as f64;
     for j in 0..n {
         for k in 0..=j {
             information[(j, k)] *= more;
-            scatter[(j, k)] *= more;
+            scatter[(j, k)] = scatter[(j, k)] * more + trust * trust * pull[j] * pull[k] * more * more;
             information[(k, j)] = information[(j, k)];
             scatter[(k, j)] = scatter[(j, k)];
         }
         information[(j, j)] += PRIOR;
         scatter[(j, j)] += PRIOR;
     }
-    let inverse = information.cholesky()?.inverse();
-    let mut matrix = &inverse * scatter * &inverse;
+    if drawn {
+        information = super::bias::information(h, &index) * (cloud.total as f64 * (1.0 - h.mixture.outliers));
+        for j in 0..n {
+            information[(j, j)] += PRIOR;
+        }
+    }
+    let inverse = information.try_inverse()?;
+    let mut matrix = &inverse * scatter * inverse.transpose();
     let units: Vec<f64> = index.iter().map(|k| unit(*k, h, cloud.scale)).collect();
     for j in 0..n {
         for k in 0..n {

@@ -64,12 +64,11 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
     }
     rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
-    let last = schedule(12, 0, 0.0);
     let corrected = rivals.iter().enumerate().map(|(i, h)| {
         let fitted = if i == 0 { *h } else { to_the_end(h, &cloud.terms, work) };
-        let parameters = without_bias(&fitted, &cloud.terms, &last, work);
-        let cost = smeared_cost(&parameters, &fitted.mixture, &some, noise, volume);
-        Hypothesis { parameters, cost, ..fitted }
+        let unbiased = without_bias(&fitted, &cloud.fine);
+        let cost = smeared_cost(&unbiased.parameters, &fitted.mixture, &some, noise, volume);
+        Hypothesis { cost, ..unbiased }
     });
     cheapest(corrected.collect()).unwrap_or(best)
 }
