@@ -26,7 +26,7 @@ use crate::Vector;
 use crate::numeric::random::Stream;
 
 /// Most trials of a step.
-const TRIALS: usize = 4;
+const TRIALS: usize = 8;
 /// No parameter moves farther than this in one.
 const MOST: f64 = 0.3;
 /// A step that promises less than this many nats is not made.
