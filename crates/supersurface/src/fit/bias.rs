@@ -19,7 +19,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{DMatrix, DVector, Rotation3};
 
 use super::columns::{Evaluation, Sample};
-use super::parameters::{COUNT, EXPONENT, POSITION, BEND, Parameters, RING, Row, TAPER, TWIST};
+use super::parameters::{BEND, COUNT, EXPONENT, POSITION, Parameters, RING, Row, TAPER, TWIST};
 use super::samples::{cells, columns};
 use super::solver::Hypothesis;
 use crate::Vector;
@@ -55,11 +55,10 @@ impl Draws {
         // along rows and columns of cells the variances are made one, as chance there would bend the profiles
         let columns = columns(s);
         let mut level = |start: usize, stride: usize, many: usize| {
-            for k in 0..3 {
-                let line = || (0..many).map(|i| start + i * stride);
-                let square = line().map(|i| noise[i][k] * noise[i][k]).sum::<f64>() / many as f64;
-                line().for_each(|i| noise[i][k] /= square.sqrt());
-            }
+            let line = || (0..many).map(|i| start + i * stride);
+            let squares = line().map(|i| noise[i].component_mul(&noise[i])).sum::<Vector>();
+            let deviations = (squares / many as f64).map(f64::sqrt);
+            line().for_each(|i| noise[i].component_div_assign(&deviations));
         };
         for _ in 0..LEVELLINGS {
             (0..count / columns).for_each(|row| level(row * columns, 1, columns));
