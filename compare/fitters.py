@@ -130,11 +130,18 @@ class Supersurface:
         self.version = version.stdout.strip()
 
     def fit(self, case):
+        spent = self.report(case).get("cpu_s")
+        if not (isinstance(spent, float) and spent > 0):
+            raise FitFailed("no cpu_s in the report")
+        return spent
+
+    def report(self, case):
+        """The whole report of a fit."""
         report = Path(self._folder.name, "fit.json")
         report.unlink(missing_ok=True)
         command = [self._program, "fit", str(case.cloud), "-o", str(report), "--model", case.model]
         if case.viewpoint:
-            command += ["--viewpoint", case.viewpoint]
+            command.append(f"--viewpoint={case.viewpoint}")
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, errors="replace", timeout=self._allowed_s, env=one_thread()
@@ -146,14 +153,15 @@ class Supersurface:
             raise FitFailed(last[0])
         try:
             answer = json.loads(report.read_text())
-            spent = float(answer["cpu_s"])
-        except (OSError, ValueError, TypeError, KeyError) as error:
-            raise FitFailed(f"no cpu_s in the report: {type(error).__name__}: {error}") from None
+        except (OSError, ValueError) as error:
+            raise FitFailed(f"no report: {type(error).__name__}: {error}") from None
+        if not isinstance(answer, dict):
+            raise FitFailed("the report is no object")
         if answer.get("status", "ok") != "ok":
             raise FitFailed(f"status {answer['status']}")
-        if not (spent > 0 and finite(answer)):
+        if not finite(answer):
             raise FitFailed("the fit is not finite")
-        return spent
+        return answer
 
     def close(self):
         self._folder.cleanup()

@@ -42,7 +42,7 @@ PROGRAM = """
             sys.exit("error: broken")
         assert os.environ["RAYON_NUM_THREADS"] == "1"
         assert (sys.argv[6] == "supertoroid") == ("e_tor" in cloud)
-        assert ("--viewpoint" in sys.argv) == ("view" in cloud)
+        assert any(a.startswith("--viewpoint=") for a in sys.argv) == ("view" in cloud)
         json.dump({{"cpu_s": 0.001, "surface": {{}}}}, open(report, "w"))
 """
 

@@ -1,48 +1,241 @@
 //! Noise makes bodies of other sizes: outside an edge there is more room than inside, so distances pull the fit.
-//! A parametric bootstrap says how far.
+//! Unbiased estimating equations say how far.
 //!
-//! A cloud is drawn from the fit with the estimated noise and fitted from there; what its shape is off is taken back.
-//! Each sample is drawn twice, with opposite noise, so that what is left is the bias and not chance.
+//! A fit ends where the score of the points, the mean of `w d ∇d`, is zero; but points that are drawn from the right body
+//! with noise have another in the mean. So what is solved is
+//!
+//! ```text
+//! S(θ) - E[S(θ); θ] = 0
+//! ```
+//!
+//! which the right body fulfils in the mean (Fisher consistency: Hampel and others, *Robust Statistics*, §4.2), by
+//! Newton's steps. As both parts change alike with the body at which they are looked at, the derivative that is left is
+//! that of the expected score by the body from which the points are drawn: the information. The expectation is a sum
+//! over cells of the surface and opposite draws of noise, the same for all bodies, so that it is smooth; the derivative is
+//! kept up to date by Broyden's formula.
 
-use super::columns::Sample;
-use super::parameters::{EXPONENT, Parameters, RING, Row, TAPER, TWIST};
-use super::samples::sample;
-use super::solver::{Hypothesis, Schedule, Workspace, refine};
-use super::terms::Terms;
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::{DMatrix, DVector, Rotation3};
+
+use super::columns::{Evaluation, Sample};
+use super::parameters::{BEND, COUNT, EXPONENT, POSITION, Parameters, RING, Row, TAPER, TWIST};
+use super::samples::{cells, columns};
+use super::solver::Hypothesis;
 use crate::Vector;
 use crate::numeric::random::Stream;
 
-/// Samples of the surface; twice as many points.
-const SAMPLES: usize = 700;
-/// No shape parameter moves farther than this.
+/// Most trials of a step.
+const TRIALS: usize = 8;
+/// No parameter moves farther than this in one.
 const MOST: f64 = 0.3;
+/// A step that promises less than this many nats is not made.
+const SETTLED: f64 = 0.02;
+/// A step that goes wrong is shortened by this.
+const SHORTER: f64 = 0.4;
+/// Step of the differences.
+const STEP: f64 = 0.03;
+/// Rounds in which the draws are levelled.
+const LEVELLINGS: usize = 3;
 
-/// The body without its bias.
-pub(super) fn without_bias(
-    h: &Hypothesis,
-    terms: &Terms,
-    schedule: &Schedule,
-    work: &mut Workspace,
-) -> Parameters {
-    let mut random = Stream::new(3, 1);
-    let mut surface = Vec::with_capacity(SAMPLES);
-    sample(&h.parameters, SAMPLES, &mut random, &mut surface);
-    let mut cloud = Vec::with_capacity(2 * surface.len());
-    for p in surface {
-        let noise = Vector::from_fn(|_, _| h.mixture.scale * random.normal());
-        cloud.extend([p + noise, p - noise]);
+/// Means over points that belong: of the score, by parameters, and of the weighted square of the distance.
+struct Moments {
+    score: Row,
+    square: f64,
+}
+
+/// Draws of Gaussian noise, one for each cell of a body, in its frame.
+struct Draws(Vec<Vector>);
+
+impl Draws {
+    fn new(s: &Parameters) -> Self {
+        let (count, mut random) = (cells(s).len(), Stream::new(3, 1));
+        let mut noise: Vec<Vector> =
+            (0..count).map(|_| Vector::from_fn(|_, _| random.normal())).collect();
+        // along rows and columns of cells the variances are made one, as chance there would bend the profiles
+        let columns = columns(s);
+        let mut level = |start: usize, stride: usize, many: usize| {
+            let line = || (0..many).map(|i| start + i * stride);
+            let squares = line().map(|i| noise[i].component_mul(&noise[i])).sum::<Vector>();
+            let deviations = (squares / many as f64).map(f64::sqrt);
+            line().for_each(|i| noise[i].component_div_assign(&deviations));
+        };
+        for _ in 0..LEVELLINGS {
+            (0..count / columns).for_each(|row| level(row * columns, 1, columns));
+            (0..columns).for_each(|column| level(column, columns, count / columns));
+        }
+        Self(noise)
     }
-    let again = refine(h, &Sample::new(cloud.into_iter()), terms, schedule, work).parameters;
+
+    /// Moments at the body of `h` of points drawn from another one with its noise.
+    fn moments(&self, from: &Parameters, h: &Hypothesis) -> Moments {
+        let cells = cells(from);
+        let mut points = Vec::with_capacity(2 * cells.len());
+        for (i, ((p, _), noise)) in cells.iter().zip(&self.0).enumerate() {
+            let noise = h.mixture.scale * noise;
+            for mut p in [p + noise, p - noise] {
+                if !from.family.is_deformed() {
+                    // the cells are those of an octant: its mirror images take turns
+                    (0..3).filter(|k| (5 * i) >> k & 1 == 1).for_each(|k| p[k] = -p[k]);
+                }
+                points.push(from.position + from.rotation * p);
+            }
+        }
+        moments(h, &Sample::new(points.into_iter()), |i| cells[i / 2].1)
+    }
+}
+
+/// Moments of points with shares.
+fn moments(h: &Hypothesis, points: &Sample, share: impl Fn(usize) -> f64) -> Moments {
+    let mut at = Evaluation::default();
+    at.fill(&h.parameters, points);
+    let (mut belonging, mut square) = (0.0, 0.0);
+    let mut pulls = Vec::with_capacity(points.len());
+    for (i, d) in at.distances[..points.len()].iter().enumerate() {
+        let pull = share(i) * h.mixture.weight(*d) * d;
+        pulls.push(pull);
+        square += pull * d;
+        belonging += share(i) * h.mixture.belongs(*d);
+    }
+    let of = |row: &Vec<f64>| pulls.iter().zip(row).map(|(p, r)| p * r).sum::<f64>() / belonging;
+    let family = h.parameters.family;
+    let score = std::array::from_fn(|k| if family.has(k) { of(&at.rows[k]) } else { 0.0 });
+    Moments { score, square: square / belonging }
+}
+
+/// The information a point has of some parameters, with the noise of `h`: the derivative, but for the sign, of the
+/// expected score at a body by the body from which the points are drawn. Also the expected score of its own points.
+pub(super) fn information(h: &Hypothesis, index: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+    let draws = Draws::new(&h.parameters);
+    let here = draws.moments(&h.parameters, h);
+    (by_differences(h, &draws, &here, index), pick(index, |k| here.score[k]))
+}
+
+fn by_differences(h: &Hypothesis, draws: &Draws, here: &Moments, index: &[usize]) -> DMatrix<f64> {
     let s = &h.parameters;
-    let back = |found: f64, drawn: f64| (drawn - found).clamp(-MOST, MOST);
-    let mut step: Row = [0.0; _];
-    let axes = again.log_axes.iter().zip(&s.log_axes);
-    step.iter_mut().zip(axes).for_each(|(step, (found, drawn))| *step = back(*found, *drawn));
-    step[RING] = back(again.ring, s.ring);
-    for k in 0..2 {
-        step[EXPONENT + k] = back(again.exponents[k], s.exponents[k]);
-        step[TAPER + k] = back(again.taper[k], s.taper[k]);
+    let mut out = DMatrix::zeros(index.len(), index.len());
+    for (j, k) in index.iter().enumerate() {
+        // away from the limits
+        let back = (EXPONENT..POSITION).contains(k) && s.exponents[k - EXPONENT] > 1.0;
+        let mut step: Row = [0.0; COUNT];
+        step[*k] = if back { -STEP } else { STEP };
+        let there = draws.moments(&s.stepped(&step), h);
+        out.set_column(j, &pick(index, |i| (here.score[i] - there.score[i]) / step[*k]));
     }
-    step[TWIST] = back(again.twist, s.twist);
-    s.stepped(&step)
+    out
+}
+
+fn pick(index: &[usize], value: impl Fn(usize) -> f64) -> DVector<f64> {
+    DVector::from_iterator(index.len(), index.iter().map(|k| value(*k)))
+}
+
+/// The body without its bias and with the noise that suits it; the cost is left as it was.
+pub(super) fn without_bias(h: &Hypothesis, points: &Sample) -> Hypothesis {
+    let mut best = Hypothesis { parameters: wide_last(&h.parameters), corrected: true, ..*h };
+    // by symmetry the place of a body has no bias
+    let moves = |k: &usize| h.parameters.family.has(*k) && !(POSITION..TAPER).contains(k);
+    let index: Vec<usize> = (0..COUNT).filter(moves).collect();
+    let all = points.len() as f64;
+    let draws = Draws::new(&best.parameters);
+    let excess = |h: &Hypothesis| {
+        let (seen, due) = (moments(h, points, |_| 1.0), draws.moments(&h.parameters, h));
+        let noise = (seen.square / due.square).sqrt().clamp(0.8, 1.25);
+        (pick(&index, |k| seen.score[k] - due.score[k]), noise)
+    };
+    let due = draws.moments(&best.parameters, &best);
+    let prior = DMatrix::identity(index.len(), index.len()) / all;
+    let information = by_differences(&best, &draws, &due, &index) + prior;
+    let Some(mut inverse) = information.try_inverse() else { return best };
+    let (mut left, _) = excess(&best);
+    let mut share = 1.0;
+    for _ in 0..TRIALS {
+        let way = &inverse * &left;
+        let promise = left.dot(&way).abs();
+        if 0.5 * all * promise < SETTLED {
+            break;
+        }
+        let mut step: Row = [0.0; COUNT];
+        let ways = index.iter().zip(way.iter());
+        ways.for_each(|(k, w): (&usize, &f64)| step[*k] = (-share * w).clamp(-MOST, MOST));
+        let mut trial = Hypothesis { parameters: best.parameters.stepped(&step), ..best };
+        let (there, noise) = excess(&trial);
+        // Broyden's update by the way that was gone
+        let gone = pick(&index, |k| value(&trial.parameters, k) - value(&best.parameters, k));
+        let foreseen = &inverse * (&there - &left);
+        let along = gone.dot(&foreseen);
+        if along > 0.1 * gone.norm_squared() {
+            let row = gone.transpose() * &inverse;
+            inverse += (&gone - foreseen) * row / along;
+        }
+        if there.dot(&(&inverse * &there)).abs() < promise {
+            trial.mixture.scale *= noise;
+            (best, left, share) = (trial, there, 1.0);
+        } else {
+            share *= SHORTER;
+        }
+    }
+    best
+}
+
+/// The same body with its second semi-axis not below the first, where these can be exchanged: of equal bodies one, so
+/// that the draws are the same for all.
+fn wide_last(s: &Parameters) -> Parameters {
+    let mut out = *s;
+    if !s.family.is_deformed() && s.log_axes[0] > s.log_axes[1] {
+        out.log_axes.swap(0, 1);
+        out.rotation *= Rotation3::new(Vector::z() * FRAC_PI_2);
+    }
+    out
+}
+
+/// A parameter of the shape, in the coordinates of the steps.
+fn value(s: &Parameters, index: usize) -> f64 {
+    match index {
+        0..RING => s.log_axes[index],
+        RING => s.ring,
+        EXPONENT..POSITION => s.exponents[index - EXPONENT],
+        TAPER..TWIST => s.taper[index - TAPER],
+        TWIST => s.twist,
+        BEND.. => s.bend[index - BEND],
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::noise::{Law, Mixture};
+    use crate::fit::parameters::Family;
+    use crate::fit::samples::sample;
+    use crate::fit::solver::Stopped;
+
+    #[test]
+    fn the_right_body_is_left_and_a_wrong_one_mended() {
+        let mut random = Stream::new(4, 0);
+        let right = Parameters {
+            log_axes: [-0.5, -0.2, 0.1],
+            exponents: [0.6, 1.2],
+            ..Parameters::ball(Family::Superellipsoid)
+        };
+        let mut points = Vec::new();
+        sample(&right, 4000, &mut random, &mut points);
+        let noise = points.iter().map(|p| p + Vector::from_fn(|_, _| 0.06 * random.normal()));
+        let points = Sample::new(noise);
+        let mixture = Mixture { law: Law::Gaussian, scale: 0.06, outliers: 1e-4, density: 1.0 };
+        for off in [0.0, 0.06] {
+            let mut step: Row = [0.0; COUNT];
+            step[..3].fill(off);
+            step[EXPONENT] = 2.0 * off;
+            let parameters = right.stepped(&step);
+            let stopped = Stopped::Rounds;
+            let h =
+                Hypothesis { parameters, mixture, cost: 0.0, rounds: 0, stopped, corrected: false };
+            let found = without_bias(&h, &points);
+            for k in [0, 1, 2, EXPONENT, EXPONENT + 1] {
+                let error = (value(&found.parameters, k) - value(&right, k)).abs();
+                assert!(error < 0.04, "{off}, parameter {k}: {error}");
+            }
+            assert!((found.mixture.scale - 0.06).abs() < 0.004);
+        }
+    }
 }

@@ -1,13 +1,19 @@
 //! How sure the parameters are: the covariance that the noise leaves.
 //!
-//! With residuals `d`, rows `J`, weights `w` of the equivalent least squares problem, `H = Σ w J Jᵀ` and
-//! `G = Σ w² d² J Jᵀ`, the estimate scatters with `H⁻¹ G H⁻¹` (the sandwich of Huber and White): right also where the
-//! noise is not the same everywhere, as at the rims of a view. What no point says, as the turn of a round tin, is held
-//! by a wide prior.
+//! With distances `d`, their derivatives `J`, the weights `w` of the equivalent least squares problem and the curvature `c`
+//! of the likelihood, `H = Σ c J Jᵀ` and `G = Σ w² d² J Jᵀ`, the estimate scatters with `H⁻¹ G H⁻ᵀ` (the sandwich of
+//! Huber and White): right also where the noise is not the same everywhere, as at the rims of a view. Weights in place
+//! of curvatures would make it too small: a wide tail pulls less than it holds. Where the bias of noise was taken back,
+//! `H` is what that says (`bias.rs`). What no point says, as the turn of a round tin, is held by a wide prior.
+//!
+//! Besides scatter there is what is not noise: the points' pull `p = Σ w d J` against priors, rays and limits, and that
+//! against the bias that was taken back. `H⁻¹ p` is the way that either moved the body, and as nobody knows how rightly,
+//! a share of it counts as doubt: `p pᵀ` joins `G`.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::Effort;
+use super::bias;
 use super::columns::Evaluation;
 use super::parameters::{COUNT, EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
@@ -17,6 +23,10 @@ use super::terms::Sight;
 
 /// Precision of the prior of every parameter in normalised units: a deviation of 1.
 const PRIOR: f64 = 1.0;
+
+/// Shares of the pull that count as doubt: of all that is beside the points, and of the bias.
+const DOUBT: f64 = 1.0;
+const DOUBT_OF_BIAS: f64 = 0.4;
 
 /// The parameters of a fit, in order, and their covariance.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,32 +80,39 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let n = index.len();
     let mut information = DMatrix::<f64>::zeros(n, n);
     let mut scatter = information.clone();
+    let mut pull = DVector::<f64>::zeros(n);
     for i in 0..cloud.fine.len() {
         let d = at.distances[i];
-        let w = h.mixture.weight(d);
+        let curvature = h.mixture.curvature(d);
+        let slope = h.mixture.weight(d) * d;
         for (j, row) in index.iter().enumerate() {
             let a = at.rows[*row][i];
+            pull[j] += slope * a;
             for (k, column) in index[..=j].iter().enumerate() {
-                let product = w * a * at.rows[*column][i];
-                information[(j, k)] += product;
-                scatter[(j, k)] += product * w * d * d;
+                let product = a * at.rows[*column][i];
+                information[(j, k)] += curvature * product;
+                scatter[(j, k)] += slope * slope * product;
             }
         }
     }
+    information.fill_upper_triangle_with_lower_triangle();
+    scatter.fill_upper_triangle_with_lower_triangle();
     // all points count, not only those that were looked at
-    let more = cloud.total as f64 / cloud.fine.len() as f64;
-    for j in 0..n {
-        for k in 0..=j {
-            information[(j, k)] *= more;
-            scatter[(j, k)] *= more;
-            information[(k, j)] = information[(j, k)];
-            scatter[(k, j)] = scatter[(j, k)];
-        }
-        information[(j, j)] += PRIOR;
-        scatter[(j, j)] += PRIOR;
+    let total = cloud.total as f64;
+    let more = total / cloud.fine.len() as f64;
+    (information, scatter, pull) = (information * more, scatter * more, pull * more);
+    if h.corrected {
+        let belonging = total * (1.0 - h.mixture.outliers);
+        let (by_point, bias) = bias::information(h, &index);
+        (information, pull) = (by_point * belonging, bias * (belonging * DOUBT_OF_BIAS));
+    } else {
+        pull *= DOUBT;
     }
-    let inverse = information.cholesky()?.inverse();
-    let mut matrix = &inverse * scatter * &inverse;
+    scatter += &pull * pull.transpose();
+    let prior = DMatrix::identity(n, n) * PRIOR;
+    let inverse = (information + &prior).try_inverse()?;
+    let scattered = &inverse * (scatter + prior) * inverse.transpose();
+    let mut matrix = 0.5 * (&scattered + scattered.transpose());
     let units: Vec<f64> = index.iter().map(|k| unit(*k, h, cloud.scale)).collect();
     for j in 0..n {
         for k in 0..n {

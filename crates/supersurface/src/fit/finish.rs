@@ -18,6 +18,8 @@ use crate::numeric::random::Stream;
 const RAYS: usize = 48;
 /// Most rounds on all points.
 const ROUNDS: usize = 15;
+/// The last rounds gain less than this many nats, so that the way there does not matter.
+const END: f64 = 1e-6;
 /// Share of the surface that must have points near it for the points to show all of it.
 pub(super) const COVERED: f64 = 0.9;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
@@ -58,18 +60,20 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
         let refined = rivals.iter().map(|h| to_the_end(h, &terms, work));
         return cheapest(refined.collect()).unwrap_or(best);
     }
+    let last = Schedule { tolerance: END, ..schedule(5, RAYS, 0.0) };
+    rivals[0] = refine(&best, &cloud.fine, &cloud.terms, &last, work);
+    let best = rivals[0];
     let noise = best.mixture.scale;
     if noise < BIASED {
         return best;
     }
     rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
-    let last = schedule(12, 0, 0.0);
     let corrected = rivals.iter().enumerate().map(|(i, h)| {
         let fitted = if i == 0 { *h } else { to_the_end(h, &cloud.terms, work) };
-        let parameters = without_bias(&fitted, &cloud.terms, &last, work);
-        let cost = smeared_cost(&parameters, &fitted.mixture, &some, noise, volume);
-        Hypothesis { parameters, cost, ..fitted }
+        let unbiased = without_bias(&fitted, &cloud.fine);
+        let cost = smeared_cost(&unbiased.parameters, &fitted.mixture, &some, noise, volume);
+        Hypothesis { cost, ..unbiased }
     });
     cheapest(corrected.collect()).unwrap_or(best)
 }

@@ -71,6 +71,19 @@ impl Mixture {
         share.belongs * share.weight / (self.scale * self.scale)
     }
 
+    /// Second derivative of the negative log-likelihood of one distance, in 1/length²: below the weight where the law is
+    /// wider than a Gaussian, negative for outliers.
+    pub(super) fn curvature(&self, d: f64) -> f64 {
+        let Share { belongs, weight, .. } = self.share::<false>(d);
+        let precision = 1.0 / (self.scale * self.scale);
+        let slope = weight * d * precision;
+        let within = match self.law {
+            Law::Gaussian => 1.0,
+            Law::StudentT => weight * (1.5 * weight - 1.0),
+        };
+        belongs * (within * precision - (1.0 - belongs) * slope * slope)
+    }
+
     /// Probability that a point at distance `d` belongs to the surface.
     #[inline]
     pub(super) fn belongs(&self, d: f64) -> f64 {
@@ -188,6 +201,9 @@ mod tests {
                 let cost = |d: f64| mixture.cost(&[d; 8], 1);
                 let slope = (cost(d + 1e-6) - cost(d - 1e-6)) / (2e-6 * d);
                 assert!((slope - w).abs() < 1e-4 * (1.0 + w), "{slope} {w}");
+                let slope = |d: f64| mixture.weight(d) * d;
+                let curvature = (slope(d + 1e-6) - slope(d - 1e-6)) / 2e-6;
+                assert!((curvature - mixture.curvature(*d)).abs() < 1e-4 * (1.0 + w));
             }
         }
     }

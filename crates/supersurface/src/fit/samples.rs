@@ -15,6 +15,8 @@ use crate::numeric::superellipse::norm;
 /// Cells around, and from pole to pole (twice as many around the tube of a toroid).
 const AROUND: usize = 48;
 const UPWARDS: usize = 24;
+/// Cells of a quarter of a superellipse where an octant stands for all.
+const FINE: usize = 20;
 
 /// Appends `count` points of the surface to `out`, in strata of equal area.
 pub(super) fn sample(s: &Parameters, count: usize, random: &mut Stream, out: &mut Vec<Vector>) {
@@ -53,6 +55,39 @@ pub(super) fn sample(s: &Parameters, count: usize, random: &mut Stream, out: &mu
         let p = place(s, on_curve(u, s.exponents[0]), on_curve(v, s.exponents[1]));
         out.push(s.position + s.rotation * s.deformed(&p));
     }
+}
+
+/// Cells in a row of [`cells`].
+pub(super) const fn columns(s: &Parameters) -> usize {
+    if s.family.is_deformed() { AROUND } else { FINE }
+}
+
+/// Places of the undeformed body's first octant, or of a deformed body's whole surface, in the body's frame, with their
+/// areas: sums over them change smoothly with the body.
+pub(super) fn cells(s: &Parameters) -> Vec<(Vector, f64)> {
+    let columns = columns(s);
+    let (low, rows, step) = match (s.family.is_deformed(), s.family.is_ring()) {
+        (true, _) => (-FRAC_PI_2, UPWARDS, PI / UPWARDS as f64),
+        (false, true) => (0.0, 2 * FINE, FRAC_PI_2 / FINE as f64),
+        (false, false) => (0.0, FINE, FRAC_PI_2 / FINE as f64),
+    };
+    // nodes and middles take turns
+    let curve = |n: usize, low: f64, step: f64, e: f64| -> Vec<[f64; 2]> {
+        (0..=2 * n).map(|i| on_curve(low + 0.5 * step * i as f64, e)).collect()
+    };
+    let upwards = curve(rows, low, step, s.exponents[0]);
+    let turn = if s.family.is_deformed() { TAU } else { FRAC_PI_2 } / columns as f64;
+    let around = curve(columns, 0.0, turn, s.exponents[1]);
+    let at = |i: usize, j: usize| s.deformed(&place(s, upwards[i], around[j]));
+    let mut out = Vec::with_capacity(rows * columns);
+    for i in (1..2 * rows).step_by(2) {
+        for j in (1..2 * columns).step_by(2) {
+            let rising = at(i + 1, j + 1) - at(i - 1, j - 1);
+            let falling = at(i - 1, j + 1) - at(i + 1, j - 1);
+            out.push((at(i, j), 0.5 * rising.cross(&falling).norm()));
+        }
+    }
+    out
 }
 
 /// The point of the unit superellipse at a polar angle.

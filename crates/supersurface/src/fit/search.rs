@@ -162,7 +162,8 @@ fn add(pool: &mut Vec<Hypothesis>, h: Hypothesis) {
 fn begin(s: &Parameters, terms: &Terms) -> Hypothesis {
     let law = if terms.sight == Sight::OneSide { Law::StudentT } else { Law::Gaussian };
     let mixture = Mixture { law, scale: 0.1, outliers: 0.3, density: 1.0 };
-    Hypothesis { parameters: *s, mixture, cost: f64::MAX, rounds: 0, stopped: Stopped::Rounds }
+    let (cost, stopped) = (f64::MAX, Stopped::Rounds);
+    Hypothesis { parameters: *s, mixture, cost, rounds: 0, stopped, corrected: false }
 }
 
 /// The scale of the first rounds is tied to the start's own body, so that a small body among outliers is not

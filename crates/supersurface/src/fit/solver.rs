@@ -19,6 +19,8 @@ pub(super) struct Hypothesis {
     pub(super) rounds: usize,
     /// Why the last rounds ended.
     pub(super) stopped: Stopped,
+    /// True when the bias of the noise is taken back.
+    pub(super) corrected: bool,
 }
 
 /// Why the iteration of a fit ended.
@@ -222,7 +224,7 @@ pub(super) fn refine(
         + terms.spread_cost(&s, n)
         + terms.facing_cost(&s, &mixture, points, &work.now);
     let cost = if cost.is_finite() { cost } else { f64::MAX };
-    Hypothesis { parameters: s, mixture, cost, rounds, stopped }
+    Hypothesis { parameters: s, mixture, cost, rounds, stopped, corrected: false }
 }
 
 /// The damped step `-(H + λ diag H)⁻¹ b` over the parameters that may move; `None` when the matrix is not
