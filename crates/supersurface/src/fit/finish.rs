@@ -34,34 +34,39 @@ const SIGHTED: usize = 2;
 pub(super) const COMPARING: usize = 400;
 
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
-pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspace) -> Hypothesis {
-    let to_the_end = |h: &Hypothesis, terms: &Terms, work: &mut Workspace| {
+pub(super) fn finish(
+    cloud: &Normalised,
+    terms: &Terms,
+    pool: &[Hypothesis],
+    work: &mut Workspace,
+) -> Hypothesis {
+    let to_the_end = |h: &Hypothesis, work: &mut Workspace| {
         refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
-    let best = to_the_end(&pool[0], &cloud.terms, work);
+    let best = to_the_end(&pool[0], work);
     let close = WORSE * cloud.middle.len() as f64;
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
-    let Sight::AllAround { volume } = cloud.terms.sight else {
-        if cloud.effort == Effort::Quick {
-            return best;
+    let volume = match terms.sight {
+        Sight::AllAround { volume } => volume,
+        Sight::Partly => {
+            let others = near.take(COMPARED - 1).map(|h| to_the_end(h, work));
+            return cheapest(others.chain([best]).collect()).unwrap_or(best);
         }
-        let others: Vec<Hypothesis> =
-            near.take(SIGHTED - 1).map(|h| to_the_end(h, &cloud.terms, work)).collect();
-        let along = others.iter().chain([&best]).map(|h| {
-            let last = Schedule { along_rays: true, ..schedule(10, RAYS, h.mixture.scale) };
-            refine(h, &cloud.fine, &cloud.terms, &last, work)
-        });
-        return cheapest(along.collect()).unwrap_or(best);
+        Sight::OneSide if cloud.effort == Effort::Quick => return best,
+        Sight::OneSide => {
+            let others: Vec<Hypothesis> =
+                near.take(SIGHTED - 1).map(|h| to_the_end(h, work)).collect();
+            let along = others.iter().chain([&best]).map(|h| {
+                let last = Schedule { along_rays: true, ..schedule(10, RAYS, h.mixture.scale) };
+                refine(h, &cloud.fine, terms, &last, work)
+            });
+            return cheapest(along.collect()).unwrap_or(best);
+        }
     };
     let mut rivals = vec![best];
     rivals.extend(near.take(COMPARED - 1));
-    if !best.parameters.family.is_deformed() && coverage(&best, &cloud.middle) < COVERED {
-        let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
-        let refined = rivals.iter().map(|h| to_the_end(h, &terms, work));
-        return cheapest(refined.collect()).unwrap_or(best);
-    }
     let last = Schedule { tolerance: END, ..schedule(5, RAYS, 0.0) };
-    rivals[0] = refine(&best, &cloud.fine, &cloud.terms, &last, work);
+    rivals[0] = refine(&best, &cloud.fine, terms, &last, work);
     let best = rivals[0];
     let noise = best.mixture.scale;
     if noise < BIASED {
@@ -70,7 +75,7 @@ pub(super) fn finish(cloud: &Normalised, pool: &[Hypothesis], work: &mut Workspa
     rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
     let corrected = rivals.iter().enumerate().map(|(i, h)| {
-        let fitted = if i == 0 { *h } else { to_the_end(h, &cloud.terms, work) };
+        let fitted = if i == 0 { *h } else { to_the_end(h, work) };
         let unbiased = without_bias(&fitted, &cloud.fine);
         let cost = smeared_cost(&unbiased.parameters, &fitted.mixture, &some, noise, volume);
         Hypothesis { cost, ..unbiased }

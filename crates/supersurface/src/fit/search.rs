@@ -49,14 +49,24 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     if pool.is_empty() {
         pool.push(begin(&Parameters::ball(family), &cloud.terms));
     }
-    let found = finish(cloud, &pool, &mut work);
+    if shows_a_part(cloud, &pool[0]) {
+        let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
+        let mut again = Vec::new();
+        for h in pool.iter().take(KEPT) {
+            let schedule = schedule(8, 0, h.mixture.scale);
+            add(&mut again, refine(h, &cloud.middle, &terms, &schedule, &mut work));
+        }
+        switch(cloud, &terms, &mut again, &mut work);
+        return finish(cloud, &terms, &again, &mut work);
+    }
+    let found = finish(cloud, &cloud.terms, &pool, &mut work);
     let thorough_view = cloud.terms.sight == Sight::OneSide && cloud.effort == Effort::Thorough;
     if !thorough_view || correlation(cloud, &found) < ASTRAY {
         return found;
     }
     let points: Vec<Vector> = cloud.coarse.points().collect();
     search(cloud, family, &turned_frames(&points, &cloud.terms), &mut pool, &mut work);
-    finish(cloud, &pool, &mut work)
+    finish(cloud, &cloud.terms, &pool, &mut work)
 }
 
 /// True for a body that leaves out many points and shows little of itself.
@@ -64,6 +74,12 @@ fn is_doubtful(cloud: &Normalised, h: &Hypothesis) -> bool {
     h.mixture.outliers > LEFT_OUT
         && cloud.terms.sight != Sight::OneSide
         && coverage(h, &cloud.middle) < COVERED
+}
+
+/// True where the points are only on a part of the surface, though they might be anywhere.
+fn shows_a_part(cloud: &Normalised, h: &Hypothesis) -> bool {
+    let all_around = matches!(cloud.terms.sight, Sight::AllAround { .. });
+    all_around && !h.parameters.family.is_deformed() && coverage(h, &cloud.middle) < COVERED
 }
 
 /// Adds what is found from some frames to a pool of hypotheses, best first.
@@ -115,6 +131,11 @@ fn search(
             return;
         }
     }
+    switch(cloud, terms, pool, work);
+}
+
+/// Adds the relatives of the best, as long as that helps.
+fn switch(cloud: &Normalised, terms: &Terms, pool: &mut Vec<Hypothesis>, work: &mut Workspace) {
     for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
         for relative in relatives(&best.parameters, terms.only_eye()) {
