@@ -1,5 +1,7 @@
 //! The last stage, on all points: by what the points can show of the surface.
 
+use std::f64::consts::PI;
+
 use super::Effort;
 use super::bias::without_bias;
 use super::centred::spread;
@@ -20,8 +22,8 @@ const RAYS: usize = 48;
 const ROUNDS: usize = 15;
 /// The last rounds gain less than this many nats, so that the way there does not matter.
 const END: f64 = 1e-6;
-/// Share of the surface that must have points near it for the points to show all of it.
-pub(super) const COVERED: f64 = 0.9;
+/// Coverage from which the points show all of the surface.
+pub(super) const COVERED: f64 = 0.79;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.018;
 pub(super) const BLURRED: f64 = 0.02;
@@ -87,9 +89,12 @@ fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
     rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// Share of the surface that has points near it, in [0, 1].
+/// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius
+/// of a place on it, those that are missing are counted, those too many are not.
 pub(super) fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
     const PROBES: usize = 320;
+    /// Points due within the radius.
+    const DUE: f64 = 20.0;
     let s: &Parameters = &h.parameters;
     let near = 3.0 * h.mixture.scale + 1e-3;
     let on: Vec<Vector> = distances(s, points.points())
@@ -100,8 +105,10 @@ pub(super) fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
         .collect();
     let mut probes = Vec::with_capacity(PROBES);
     sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);
-    let spacing = (s.area() / on.len().max(1) as f64).sqrt();
-    let reach = (2.0 * h.mixture.scale).max(1.8 * spacing);
-    let seen = |probe: &&Vector| on.iter().any(|p| (p - *probe).norm_squared() < reach * reach);
-    probes.iter().filter(seen).count() as f64 / probes.len().max(1) as f64
+    let density = on.len().max(1) as f64 / s.area();
+    let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
+    let due = PI * square * density;
+    let found = |probe: &Vector| on.iter().filter(|p| (*p - probe).norm_squared() < square).count();
+    let shares = probes.iter().map(|probe| (found(probe) as f64 / due).min(1.0));
+    shares.sum::<f64>() / probes.len().max(1) as f64
 }
