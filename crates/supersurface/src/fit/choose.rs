@@ -3,7 +3,8 @@
 use super::Effort;
 use super::centred::spread;
 use super::columns::{Evaluation, Sample, distances};
-use super::finish::{BLURRED, COMPARING, COVERED, coverage};
+use super::coverage::shows_a_part;
+use super::finish::{BLURRED, COMPARING};
 use super::misfit::correlation;
 use super::parameters::{Family, Parameters};
 use super::prepare::Normalised;
@@ -190,8 +191,9 @@ fn by_evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Option<(usize, f64)
 fn evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Vec<f64> {
     let noise = rivals.iter().map(|h| h.mixture.scale).fold(f64::INFINITY, f64::min);
     let mut work = Workspace::default();
-    let all_around = cloud.terms.sight != Sight::OneSide;
-    let partly = (all_around && rivals.first().is_some_and(|h| is_part(cloud, h)))
+    let partly = rivals
+        .first()
+        .is_some_and(|h| !h.parameters.family.is_deformed() && shows_a_part(cloud, h))
         .then(|| Terms { sight: Sight::Partly, ..cloud.terms.clone() });
     let mut cost = |h: &Hypothesis| match (&partly, cloud.terms.sight) {
         // all that is known of a view is in what it was fitted by
@@ -211,11 +213,6 @@ fn evidence(cloud: &Normalised, rivals: &[Hypothesis]) -> Vec<f64> {
         .iter()
         .map(|h| -cost(h) / PATCH - price * h.parameters.family.freedoms() as f64)
         .collect()
-}
-
-/// True where the points show only a part of a body.
-fn is_part(cloud: &Normalised, h: &Hypothesis) -> bool {
-    !h.parameters.family.is_deformed() && coverage(h, &cloud.middle) < COVERED
 }
 
 /// What a parameter costs: half a logarithm of the independent points.

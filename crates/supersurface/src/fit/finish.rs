@@ -1,20 +1,14 @@
 //! The last stage, on all points: by what the points can show of the surface.
 
-use std::f64::consts::PI;
-
 use super::Effort;
 use super::bias::without_bias;
 use super::centred::spread;
-use super::columns::{Sample, distances};
-use super::parameters::Parameters;
 use super::prepare::Normalised;
-use super::samples::sample;
 use super::search::schedule;
 use super::smeared::smeared_cost;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::terms::{Sight, Terms};
 use crate::Vector;
-use crate::numeric::random::Stream;
 
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
@@ -22,8 +16,6 @@ const RAYS: usize = 48;
 const ROUNDS: usize = 15;
 /// The last rounds gain less than this many nats, so that the way there does not matter.
 const END: f64 = 1e-6;
-/// Coverage from which the points show all of the surface.
-pub(super) const COVERED: f64 = 0.79;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.018;
 pub(super) const BLURRED: f64 = 0.02;
@@ -87,28 +79,4 @@ pub(super) fn finish(
 
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
     rivals.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
-}
-
-/// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius
-/// of a place on it, those that are missing are counted, those too many are not.
-pub(super) fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
-    const PROBES: usize = 320;
-    /// Points due within the radius.
-    const DUE: f64 = 20.0;
-    let s: &Parameters = &h.parameters;
-    let near = 3.0 * h.mixture.scale + 1e-3;
-    let on: Vec<Vector> = distances(s, points.points())
-        .into_iter()
-        .zip(points.points())
-        .filter(|(d, _)| d.abs() < near)
-        .map(|(_, p)| p)
-        .collect();
-    let mut probes = Vec::with_capacity(PROBES);
-    sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);
-    let density = on.len().max(1) as f64 / s.area();
-    let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
-    let due = PI * square * density;
-    let found = |probe: &Vector| on.iter().filter(|p| (*p - probe).norm_squared() < square).count();
-    let shares = probes.iter().map(|probe| (found(probe) as f64 / due).min(1.0));
-    shares.sum::<f64>() / probes.len().max(1) as f64
 }

@@ -29,6 +29,7 @@ mod centred;
 mod choose;
 mod columns;
 mod covariance;
+mod coverage;
 mod finish;
 mod free_space;
 pub mod generic;

@@ -2,7 +2,8 @@
 
 use super::Effort;
 use super::columns::Sample;
-use super::finish::{COVERED, coverage, finish};
+use super::coverage::shows_a_part;
+use super::finish::finish;
 use super::misfit::correlation;
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
@@ -43,13 +44,14 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     let mut work = Workspace::default();
     let mut pool = Vec::new();
     search(cloud, family, &cloud.frames, &mut pool, &mut work);
-    if pool.first().is_some_and(|h| is_doubtful(cloud, h)) {
+    let doubtful = |h: &Hypothesis| h.mixture.outliers > LEFT_OUT && shows_a_part(cloud, h);
+    if pool.first().is_some_and(doubtful) {
         search(cloud, family, &other_frames(&cloud.points, &cloud.terms), &mut pool, &mut work);
     }
     if pool.is_empty() {
         pool.push(begin(&Parameters::ball(family), &cloud.terms));
     }
-    if shows_a_part(cloud, &pool[0]) {
+    if !family.is_deformed() && shows_a_part(cloud, &pool[0]) {
         let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
         let mut again = Vec::new();
         for h in pool.iter().take(KEPT) {
@@ -67,19 +69,6 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     let points: Vec<Vector> = cloud.coarse.points().collect();
     search(cloud, family, &turned_frames(&points, &cloud.terms), &mut pool, &mut work);
     finish(cloud, &cloud.terms, &pool, &mut work)
-}
-
-/// True for a body that leaves out many points and shows little of itself.
-fn is_doubtful(cloud: &Normalised, h: &Hypothesis) -> bool {
-    h.mixture.outliers > LEFT_OUT
-        && cloud.terms.sight != Sight::OneSide
-        && coverage(h, &cloud.middle) < COVERED
-}
-
-/// True where the points are only on a part of the surface, though they might be anywhere.
-fn shows_a_part(cloud: &Normalised, h: &Hypothesis) -> bool {
-    let all_around = matches!(cloud.terms.sight, Sight::AllAround { .. });
-    all_around && !h.parameters.family.is_deformed() && coverage(h, &cloud.middle) < COVERED
 }
 
 /// Adds what is found from some frames to a pool of hypotheses, best first.

@@ -1,0 +1,51 @@
+//! Do the points show all of a body or a part of it? Places on the surface are looked at, and the points about each are
+//! counted:
+//!
+//! ```text
+//! coverage = mean over places of min(1, found / due),    due = points on the surface per area, times π r²
+//! ```
+//!
+//! Noise fills gaps that are narrower than itself, so `r` is not below three times its scale.
+
+use std::f64::consts::PI;
+
+use super::columns::{Sample, distances};
+use super::parameters::Parameters;
+use super::prepare::Normalised;
+use super::samples::sample;
+use super::solver::Hypothesis;
+use super::terms::Sight;
+use crate::Vector;
+use crate::numeric::random::Stream;
+
+/// Coverage from which the points show all of the surface. Chance alone makes it less than 1.
+const COVERED: f64 = 0.79;
+
+/// True where the points are only on a part of the surface, though no sensor's place says so.
+pub(super) fn shows_a_part(cloud: &Normalised, h: &Hypothesis) -> bool {
+    cloud.terms.sight != Sight::OneSide && coverage(h, &cloud.middle) < COVERED
+}
+
+/// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius
+/// of a place on it, those that are missing are counted, those too many are not.
+fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
+    const PROBES: usize = 320;
+    /// Points due within the radius.
+    const DUE: f64 = 20.0;
+    let s: &Parameters = &h.parameters;
+    let near = 3.0 * h.mixture.scale + 1e-3;
+    let on: Vec<Vector> = distances(s, points.points())
+        .into_iter()
+        .zip(points.points())
+        .filter(|(d, _)| d.abs() < near)
+        .map(|(_, p)| p)
+        .collect();
+    let mut probes = Vec::with_capacity(PROBES);
+    sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);
+    let density = on.len().max(1) as f64 / s.area();
+    let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
+    let due = PI * square * density;
+    let found = |probe: &Vector| on.iter().filter(|p| (*p - probe).norm_squared() < square).count();
+    let shares = probes.iter().map(|probe| (found(probe) as f64 / due).min(1.0));
+    shares.sum::<f64>() / probes.len().max(1) as f64
+}
