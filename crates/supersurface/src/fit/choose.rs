@@ -64,6 +64,7 @@ pub(super) fn choose(cloud: &Normalised, families: &[Family]) -> (Hypothesis, f6
     };
     let deformed = || families.iter().filter(|f| f.is_deformed()).map(|f| best(cloud, *f));
     let rivals: Vec<Hypothesis> = match (plain, ellipsoid) {
+        (Some((h, margin)), _) if !families.iter().any(|f| f.is_deformed()) => return (h, margin),
         (Some((h, margin)), _) if correlation(cloud, &h) < CORRELATED => return (h, margin),
         (Some((h, _)), Some(ellipsoid)) => {
             std::iter::once(h).chain(deformations(cloud, families, &h, &ellipsoid)).collect()
@@ -224,11 +225,13 @@ fn price(cloud: &Normalised) -> f64 {
 /// ring whose hole is not seen.
 fn ellipsoid_or_toroid(cloud: &Normalised, ellipsoid: Hypothesis) -> (Hypothesis, f64) {
     let hollow = may_be_hollow(cloud, &ellipsoid);
-    if !hollow && correlation(cloud, &ellipsoid) < CORRELATED {
+    let thorough = cloud.effort == Effort::Thorough;
+    // a quick fit has no time to look for rings that hide their holes
+    if !hollow && !(thorough && correlation(cloud, &ellipsoid) > CORRELATED) {
         return (ellipsoid, 0.0);
     }
     let toroid = best(cloud, Family::Supertoroid);
-    if cloud.effort == Effort::Thorough && matches!(cloud.terms.sight, Sight::AllAround { .. }) {
+    if thorough && matches!(cloud.terms.sight, Sight::AllAround { .. }) {
         if !hollow && !shows_hole(&toroid, &cloud.points, None, false) {
             return (ellipsoid, 0.0);
         }
@@ -237,7 +240,7 @@ fn ellipsoid_or_toroid(cloud: &Normalised, ellipsoid: Hypothesis) -> (Hypothesis
         return by_evidence(cloud, &rivals).map_or((ellipsoid, 0.0), |(k, m)| (rivals[k], m));
     }
     let mut margin = (ellipsoid.cost - toroid.cost) / PATCH - price(cloud);
-    let plain = margin > PLAIN;
+    let plain = thorough && margin > PLAIN;
     let poor = |h: &Hypothesis| h.mixture.scale > 0.99 * h.mixture.law.largest_scale();
     if poor(&ellipsoid) && poor(&toroid) {
         // neither explains the points (a bowl): a ring that is clearly nearer to most of many says more
