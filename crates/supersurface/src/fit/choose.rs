@@ -227,7 +227,8 @@ fn ellipsoid_or_toroid(cloud: &Normalised, ellipsoid: Hypothesis) -> (Hypothesis
     let hollow = may_be_hollow(cloud, &ellipsoid);
     let thorough = cloud.effort == Effort::Thorough;
     // a quick fit has no time to look for rings that hide their holes
-    if !hollow && !(thorough && correlation(cloud, &ellipsoid) > CORRELATED) {
+    let misfit = thorough && correlation(cloud, &ellipsoid) > CORRELATED;
+    if !hollow && !misfit {
         return (ellipsoid, 0.0);
     }
     let toroid = best(cloud, Family::Supertoroid);
