@@ -23,6 +23,7 @@ use super::parameters::{BEND, COUNT, EXPONENT, POSITION, Parameters, RING, Row, 
 use super::samples::{cells, columns};
 use super::solver::Hypothesis;
 use crate::Vector;
+use crate::numeric::lanes::{Job, dispatch, dot};
 use crate::numeric::random::Stream;
 
 /// Most trials of a step.
@@ -68,50 +69,85 @@ impl Draws {
     }
 
     /// Moments at the body of `h` of points drawn from another one with its noise.
-    fn moments(&self, from: &Parameters, h: &Hypothesis) -> Moments {
+    fn moments(&self, from: &Parameters, h: &Hypothesis, room: &mut Room) -> Moments {
         let cells = cells(from);
-        let mut points = Vec::with_capacity(2 * cells.len());
-        for (i, ((p, _), noise)) in cells.iter().zip(&self.0).enumerate() {
+        let draws = cells.iter().zip(&self.0).enumerate().flat_map(|(i, ((p, _), noise))| {
             let noise = h.mixture.scale * noise;
-            for mut p in [p + noise, p - noise] {
+            [p + noise, p - noise].map(|mut p| {
                 if !from.family.is_deformed() {
                     // the cells are those of an octant: its mirror images take turns
                     (0..3).filter(|k| (5 * i) >> k & 1 == 1).for_each(|k| p[k] = -p[k]);
                 }
-                points.push(from.position + from.rotation * p);
-            }
-        }
-        moments(h, &Sample::new(points.into_iter()), |i| cells[i / 2].1)
+                from.position + from.rotation * p
+            })
+        });
+        room.draws.set(draws);
+        room.moments.of(h, &room.draws, |i| cells[i / 2].1)
     }
 }
 
-/// Moments of points with shares.
-fn moments(h: &Hypothesis, points: &Sample, share: impl Fn(usize) -> f64) -> Moments {
-    let mut at = Evaluation::default();
-    at.fill(&h.parameters, points);
-    let (mut belonging, mut square) = (0.0, 0.0);
-    let mut pulls = Vec::with_capacity(points.len());
-    for (i, d) in at.distances[..points.len()].iter().enumerate() {
-        let pull = share(i) * h.mixture.weight(*d) * d;
-        pulls.push(pull);
-        square += pull * d;
-        belonging += share(i) * h.mixture.belongs(*d);
+/// Buffers that are used again.
+#[derive(Default)]
+struct Room {
+    draws: Sample,
+    moments: Sums,
+}
+
+#[derive(Default)]
+struct Sums {
+    at: Evaluation,
+    weights: Vec<f64>,
+}
+
+impl Sums {
+    /// Moments of points with shares, by a Gaussian's weights.
+    fn of(&mut self, h: &Hypothesis, points: &Sample, share: impl Fn(usize) -> f64) -> Moments {
+        self.at.fill(&h.parameters, points);
+        h.mixture.weigh(&self.at.distances, points.len(), &mut self.weights);
+        let (mut belonging, mut square) = (0.0, 0.0);
+        let weights = self.weights[..points.len()].iter_mut().enumerate();
+        for ((i, weight), d) in weights.zip(&self.at.distances) {
+            *weight *= share(i);
+            belonging += *weight;
+            *weight *= d;
+            square += *weight * d;
+        }
+        belonging *= h.mixture.scale * h.mixture.scale;
+        let mut score = [0.0; COUNT];
+        let rows = self.at.rows.iter().zip(&mut score).enumerate();
+        for (_, (row, sum)) in rows.filter(|(k, _)| h.parameters.family.has(*k)) {
+            dispatch(Dot(&self.weights, row, sum));
+            *sum /= belonging;
+        }
+        Moments { score, square: square / belonging }
     }
-    let of = |row: &Vec<f64>| pulls.iter().zip(row).map(|(p, r)| p * r).sum::<f64>() / belonging;
-    let family = h.parameters.family;
-    let score = std::array::from_fn(|k| if family.has(k) { of(&at.rows[k]) } else { 0.0 });
-    Moments { score, square: square / belonging }
+}
+
+/// Sum of products of two columns.
+struct Dot<'a>(&'a [f64], &'a [f64], &'a mut f64);
+
+impl Job for Dot<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        *self.2 = dot::<FUSED>(self.0, self.1);
+    }
 }
 
 /// The information a point has of some parameters, with the noise of `h`: the derivative, but for the sign, of the
 /// expected score at a body by the body from which the points are drawn. Also the expected score of its own points.
 pub(super) fn information(h: &Hypothesis, index: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
-    let draws = Draws::new(&h.parameters);
-    let here = draws.moments(&h.parameters, h);
-    (by_differences(h, &draws, &here, index), pick(index, |k| here.score[k]))
+    let (draws, mut room) = (Draws::new(&h.parameters), Room::default());
+    let here = draws.moments(&h.parameters, h, &mut room);
+    (by_differences(h, &draws, &here, index, &mut room), pick(index, |k| here.score[k]))
 }
 
-fn by_differences(h: &Hypothesis, draws: &Draws, here: &Moments, index: &[usize]) -> DMatrix<f64> {
+fn by_differences(
+    h: &Hypothesis,
+    draws: &Draws,
+    here: &Moments,
+    index: &[usize],
+    room: &mut Room,
+) -> DMatrix<f64> {
     let s = &h.parameters;
     let mut out = DMatrix::zeros(index.len(), index.len());
     for (j, k) in index.iter().enumerate() {
@@ -119,7 +155,7 @@ fn by_differences(h: &Hypothesis, draws: &Draws, here: &Moments, index: &[usize]
         let back = (EXPONENT..POSITION).contains(k) && s.exponents[k - EXPONENT] > 1.0;
         let mut step: Row = [0.0; COUNT];
         step[*k] = if back { -STEP } else { STEP };
-        let there = draws.moments(&s.stepped(&step), h);
+        let there = draws.moments(&s.stepped(&step), h, room);
         out.set_column(j, &pick(index, |i| (here.score[i] - there.score[i]) / step[*k]));
     }
     out
@@ -136,15 +172,17 @@ pub(super) fn without_bias(h: &Hypothesis, points: &Sample) -> Hypothesis {
     let moves = |k: &usize| h.parameters.family.has(*k) && !(POSITION..TAPER).contains(k);
     let index: Vec<usize> = (0..COUNT).filter(moves).collect();
     let all = points.len() as f64;
-    let draws = Draws::new(&best.parameters);
-    let excess = |h: &Hypothesis| {
-        let (seen, due) = (moments(h, points, |_| 1.0), draws.moments(&h.parameters, h));
+    let (draws, mut room, mut of_points) =
+        (Draws::new(&best.parameters), Room::default(), Sums::default());
+    let due = draws.moments(&best.parameters, &best, &mut room);
+    let prior = DMatrix::identity(index.len(), index.len()) / all;
+    let information = by_differences(&best, &draws, &due, &index, &mut room) + prior;
+    let mut excess = |h: &Hypothesis| {
+        let seen = of_points.of(h, points, |_| 1.0);
+        let due = draws.moments(&h.parameters, h, &mut room);
         let noise = (seen.square / due.square).sqrt().clamp(0.8, 1.25);
         (pick(&index, |k| seen.score[k] - due.score[k]), noise)
     };
-    let due = draws.moments(&best.parameters, &best);
-    let prior = DMatrix::identity(index.len(), index.len()) / all;
-    let information = by_differences(&best, &draws, &due, &index) + prior;
     let Some(mut inverse) = information.try_inverse() else { return best };
     let (mut left, _) = excess(&best);
     let mut share = 1.0;

@@ -80,7 +80,7 @@ impl Evaluation {
     pub(super) fn fill(&mut self, s: &Parameters, sample: &Sample) {
         let padded = sample.columns[0].len();
         self.distances.resize(padded, 0.0);
-        for row in &mut self.rows {
+        for (_, row) in self.rows.iter_mut().enumerate().filter(|(k, _)| s.family.has(*k)) {
             row.resize(padded, 0.0);
         }
         self.run::<true>(s, sample);

@@ -99,14 +99,12 @@ impl Mixture {
     /// log-likelihood of the first `count` distances; the others weigh nothing.
     pub(super) fn weigh(&self, distances: &[f64], count: usize, weights: &mut Vec<f64>) -> f64 {
         weights.resize(distances.len(), 0.0);
-        let mut sums = Sums::default();
-        dispatch(Weigh { mixture: self, distances, count, weights, sums: &mut sums });
-        sums.cost
+        self.sums::<true>(distances, count, weights).cost
     }
 
     /// Negative log-likelihood of the first `count` distances.
     pub(super) fn cost(&self, distances: &[f64], count: usize) -> f64 {
-        self.sums(distances, count).cost
+        self.sums::<true>(distances, count, &mut []).cost
     }
 
     /// `rounds` of expectation maximisation of scale (within limits) and outlier share by the first `count`
@@ -120,7 +118,7 @@ impl Mixture {
     ) {
         let n = count as f64;
         for _ in 0..rounds {
-            let Sums { belonging, spread, .. } = self.sums(distances, count);
+            let Sums { belonging, spread, .. } = self.sums::<false>(distances, count, &mut []);
             let belonging = belonging + 1e-9;
             let most = high.min(self.law.largest_scale());
             self.scale = (spread / belonging).sqrt().min(most).max(low);
@@ -128,9 +126,9 @@ impl Mixture {
         }
     }
 
-    fn sums(&self, distances: &[f64], count: usize) -> Sums {
+    fn sums<const COST: bool>(&self, distances: &[f64], count: usize, weights: &mut [f64]) -> Sums {
         let mut sums = Sums::default();
-        dispatch(Weigh { mixture: self, distances, count, weights: &mut [], sums: &mut sums });
+        dispatch(Weigh::<COST> { mixture: self, distances, count, weights, sums: &mut sums });
         sums
     }
 }
@@ -142,12 +140,12 @@ struct Sums {
     belonging: f64,
     /// Squared distances that belong, with their weights.
     spread: f64,
-    /// Negative log-likelihood.
+    /// Negative log-likelihood; zero where it is not asked for.
     cost: f64,
 }
 
 /// One pass over distances, of which only the first count; the weights are kept where there is room for them.
-struct Weigh<'a> {
+struct Weigh<'a, const COST: bool> {
     mixture: &'a Mixture,
     distances: &'a [f64],
     count: usize,
@@ -155,26 +153,39 @@ struct Weigh<'a> {
     sums: &'a mut Sums,
 }
 
-impl Job for Weigh<'_> {
+/// Blocks whose densities are multiplied before a logarithm is taken: within 1e±160, as each is within 1e±20.
+const MULTIPLIED: usize = 8;
+
+impl<const COST: bool> Job for Weigh<'_, COST> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let precision = 1.0 / (self.mixture.scale * self.mixture.scale);
         let mut lanes = [[0.0; WIDTH]; 3];
-        for (b, block) in self.distances.chunks(WIDTH).enumerate() {
-            let (mut d, mut weights) = ([0.0; WIDTH], [0.0; WIDTH]);
-            d[..block.len()].copy_from_slice(block);
-            for i in 0..WIDTH {
-                // padding has no say
-                let here = if b * WIDTH + i < self.count { 1.0 } else { 0.0 };
-                let share = self.mixture.share::<FUSED>(d[i]);
-                let weight = here * share.belongs * share.weight;
-                weights[i] = weight * precision;
-                lanes[0][i] += here * share.belongs;
-                lanes[1][i] += weight * d[i] * d[i];
-                lanes[2][i] -= here * ln::<FUSED>(share.density);
+        for (g, group) in self.distances.chunks(MULTIPLIED * WIDTH).enumerate() {
+            let mut product = [1.0; WIDTH];
+            for (b, block) in group.chunks(WIDTH).enumerate() {
+                let first = (g * MULTIPLIED + b) * WIDTH;
+                let (mut d, mut weights) = ([0.0; WIDTH], [0.0; WIDTH]);
+                d[..block.len()].copy_from_slice(block);
+                for i in 0..WIDTH {
+                    // padding has no say
+                    let counts = first + i < self.count;
+                    let here = if counts { 1.0 } else { 0.0 };
+                    let share = self.mixture.share::<FUSED>(d[i]);
+                    let weight = here * share.belongs * share.weight;
+                    weights[i] = weight * precision;
+                    lanes[0][i] += here * share.belongs;
+                    lanes[1][i] += weight * d[i] * d[i];
+                    product[i] *= if counts { share.density } else { 1.0 };
+                }
+                if let Some(out) = self.weights.get_mut(first..first + block.len()) {
+                    out.copy_from_slice(&weights[..block.len()]);
+                }
             }
-            if let Some(out) = self.weights.get_mut(b * WIDTH..b * WIDTH + block.len()) {
-                out.copy_from_slice(&weights[..block.len()]);
+            if COST {
+                for i in 0..WIDTH {
+                    lanes[2][i] -= ln::<FUSED>(product[i]);
+                }
             }
         }
         let [belonging, spread, cost] = lanes.map(|l| l.iter().sum());

@@ -171,8 +171,11 @@ impl Parameters {
 
     /// Where the deformations take a point of the undeformed body, in the body's frame.
     pub(super) fn deformed(&self, p: &Vector) -> Vector {
-        let height = self.log_axes[2].exp();
         let mut q = *p;
+        if !self.family.is_deformed() {
+            return q;
+        }
+        let height = self.log_axes[2].exp();
         if self.family.is_tapered() {
             q.x *= 1.0 + self.taper[0] * p.z / height;
             q.y *= 1.0 + self.taper[1] * p.z / height;

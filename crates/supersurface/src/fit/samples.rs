@@ -9,8 +9,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::parameters::Parameters;
 use crate::Vector;
+use crate::numeric::lanes::{Job, WIDTH, dispatch, exp, ln, sin_cos};
 use crate::numeric::random::Stream;
-use crate::numeric::superellipse::norm;
 
 /// Cells around, and from pole to pole (twice as many around the tube of a toroid).
 const AROUND: usize = 48;
@@ -22,39 +22,46 @@ const FINE: usize = 20;
 pub(super) fn sample(s: &Parameters, count: usize, random: &mut Stream, out: &mut Vec<Vector>) {
     let (low, rows) = if s.family.is_ring() { (-PI, 2 * UPWARDS) } else { (-FRAC_PI_2, UPWARDS) };
     let step = [PI / UPWARDS as f64, TAU / AROUND as f64];
-    let nodes = |n: usize, low: f64, step: f64, e: f64| -> Vec<[f64; 2]> {
-        (0..=n).map(|i| on_curve(low + step * i as f64, e)).collect()
-    };
+    let nodes =
+        |n: usize, low: f64, step: f64, e: f64| on_curve((0..=n).map(|i| low + step * i as f64), e);
     let upwards = nodes(rows, low, step[0], s.exponents[0]);
     let around = nodes(AROUND, 0.0, step[1], s.exponents[1]);
-    let corner = |i: usize, j: usize| s.deformed(&place(s, upwards[i], around[j]));
+    let body = Body::new(s);
     let mut sums = Vec::with_capacity(rows * AROUND);
     let mut sum = 0.0;
-    let mut lower: Vec<Vector> = (0..=AROUND).map(|j| corner(0, j)).collect();
+    let row = |i: usize| {
+        let up = upwards[i];
+        around.iter().map(move |a| body.point(up, *a))
+    };
+    let (mut lower, mut upper): (Vec<Vector>, Vec<Vector>) = (row(0).collect(), Vec::new());
     for i in 0..rows {
-        let upper: Vec<Vector> = (0..=AROUND).map(|j| corner(i + 1, j)).collect();
+        upper.clear();
+        upper.extend(row(i + 1));
         for j in 0..AROUND {
             let across = (upper[j + 1] - lower[j]).cross(&(upper[j] - lower[j + 1]));
             sum += across.norm();
             sums.push(sum);
         }
-        lower = upper;
+        std::mem::swap(&mut lower, &mut upper);
     }
     if !(sum > 0.0 && sum.is_finite()) {
         return;
     }
     let mut cell = 0;
-    for k in 0..count {
+    let mut drawn = |k: usize| {
         let at = (k as f64 + random.uniform()) / count as f64 * sum;
         while cell + 1 < sums.len() && sums[cell] < at {
             cell += 1;
         }
         let (i, j) = (cell / AROUND, cell % AROUND);
         let u = low + step[0] * (i as f64 + random.uniform());
-        let v = step[1] * (j as f64 + random.uniform());
-        let p = place(s, on_curve(u, s.exponents[0]), on_curve(v, s.exponents[1]));
-        out.push(s.position + s.rotation * s.deformed(&p));
-    }
+        (u, step[1] * (j as f64 + random.uniform()))
+    };
+    let (up, round): (Vec<f64>, Vec<f64>) = (0..count).map(&mut drawn).unzip();
+    let up = on_curve(up.into_iter(), s.exponents[0]);
+    let round = on_curve(round.into_iter(), s.exponents[1]);
+    let places = up.into_iter().zip(round).map(|(up, round)| body.point(up, round));
+    out.extend(places.map(|p| s.position + s.rotation * p));
 }
 
 /// Cells in a row of [`cells`].
@@ -72,13 +79,14 @@ pub(super) fn cells(s: &Parameters) -> Vec<(Vector, f64)> {
         (false, false) => (0.0, FINE, FRAC_PI_2 / FINE as f64),
     };
     // nodes and middles take turns
-    let curve = |n: usize, low: f64, step: f64, e: f64| -> Vec<[f64; 2]> {
-        (0..=2 * n).map(|i| on_curve(low + 0.5 * step * i as f64, e)).collect()
+    let curve = |n: usize, low: f64, step: f64, e: f64| {
+        on_curve((0..=2 * n).map(|i| low + 0.5 * step * i as f64), e)
     };
     let upwards = curve(rows, low, step, s.exponents[0]);
     let turn = if s.family.is_deformed() { TAU } else { FRAC_PI_2 } / columns as f64;
     let around = curve(columns, 0.0, turn, s.exponents[1]);
-    let at = |i: usize, j: usize| s.deformed(&place(s, upwards[i], around[j]));
+    let body = Body::new(s);
+    let at = |i: usize, j: usize| body.point(upwards[i], around[j]);
     let mut out = Vec::with_capacity(rows * columns);
     for i in (1..2 * rows).step_by(2) {
         for j in (1..2 * columns).step_by(2) {
@@ -90,17 +98,59 @@ pub(super) fn cells(s: &Parameters) -> Vec<(Vector, f64)> {
     out
 }
 
-/// The point of the unit superellipse at a polar angle.
-fn on_curve(angle: f64, e: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    let length = norm(cos.abs(), sin.abs(), 2.0 / e);
-    [cos / length, sin / length]
+/// The points of the unit superellipse at polar angles.
+fn on_curve(angles: impl Iterator<Item = f64>, exponent: f64) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = angles.map(|a| [a, 0.0]).collect();
+    dispatch(OnCurve { points: &mut points, power: 2.0 / exponent });
+    points
 }
 
-fn place(s: &Parameters, [out, up]: [f64; 2], [x, y]: [f64; 2]) -> Vector {
-    let [a, b, c] = s.log_axes.map(f64::exp);
-    let radius = if s.family.is_ring() { s.ring + out } else { out };
-    Vector::new(a * radius * x, b * radius * y, c * up)
+/// Angles become points.
+struct OnCurve<'a> {
+    points: &'a mut [[f64; 2]],
+    power: f64,
+}
+
+impl Job for OnCurve<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        for block in self.points.chunks_mut(WIDTH) {
+            let mut angles = [0.0; WIDTH];
+            angles.iter_mut().zip(&*block).for_each(|(a, p)| *a = p[0]);
+            let places = angles.map(|a| {
+                let (sin, cos) = sin_cos::<FUSED>(a);
+                let (u, v) = (cos.abs(), sin.abs());
+                let (large, small) = if u > v { (u, v) } else { (v, u) };
+                let ratio = if small > 1e-300 { small / large } else { 1e-300 };
+                let t = exp::<FUSED>(self.power * ln::<FUSED>(ratio));
+                let length = large * exp::<FUSED>(ln::<FUSED>(1.0 + t) / self.power);
+                [cos / length, sin / length]
+            });
+            block.copy_from_slice(&places[..block.len()]);
+        }
+    }
+}
+
+/// A body and its semi-axes.
+#[derive(Clone, Copy)]
+struct Body<'a> {
+    s: &'a Parameters,
+    axes: [f64; 3],
+    ring: f64,
+}
+
+impl<'a> Body<'a> {
+    fn new(s: &'a Parameters) -> Self {
+        let ring = if s.family.is_ring() { s.ring } else { 0.0 };
+        Self { s, axes: s.log_axes.map(f64::exp), ring }
+    }
+
+    /// The point of the surface, in the body's frame, that is made of points of the two superellipses.
+    fn point(&self, [out, up]: [f64; 2], [x, y]: [f64; 2]) -> Vector {
+        let [a, b, c] = self.axes;
+        let radius = self.ring + out;
+        self.s.deformed(&Vector::new(a * radius * x, b * radius * y, c * up))
+    }
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ use crate::Vector;
 use crate::numeric::lanes::{Job, WIDTH, dispatch, exp};
 use crate::numeric::random::Stream;
 
+/// Exponent from which a Gaussian's value is left out: `e^-16` of its peak.
+const NEGLIGIBLE: f64 = 16.0;
 /// Least and most samples of a surface.
 const SAMPLES: [f64; 2] = [600.0, 3000.0];
 
@@ -64,9 +66,15 @@ impl Job for Smear<'_> {
         let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
         let mut lanes = [[0.0; WIDTH]; 2];
         for ((x, y), z) in blocks.zip(z.as_chunks::<WIDTH>().0) {
-            for i in 0..WIDTH {
+            let squares: [f64; WIDTH] = std::array::from_fn(|i| {
                 let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
-                let square = dx * dx + dy * dy + dz * dz;
+                dx * dx + dy * dy + dz * dz
+            });
+            // neighbours in the list are neighbours on the surface: most blocks are far
+            if squares.iter().all(|s| self.precision * s > NEGLIGIBLE) {
+                continue;
+            }
+            for (i, square) in squares.iter().enumerate() {
                 let kernel = exp::<FUSED>(-self.precision * square);
                 lanes[0][i] += kernel;
                 lanes[1][i] += kernel * square;
