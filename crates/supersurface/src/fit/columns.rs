@@ -1,7 +1,9 @@
 //! The kernel over many points: columns in, columns out, eight points at a time without a branch.
 
-use super::kernel::{BENT, Block, RINGED, TAPERED, TWISTED, evaluate};
-use super::parameters::{COUNT, Family, POSITION, Parameters, Row};
+use super::kernel::{
+    BENT, Block, DERIVATIVES, DISTANCES, NORMALS, RINGED, TAPERED, TWISTED, evaluate,
+};
+use super::parameters::{COUNT, Family, POSITION, Parameters, ROTATION, Row};
 use crate::Vector;
 use crate::numeric::lanes::{Job, WIDTH, dispatch};
 
@@ -10,8 +12,8 @@ use crate::numeric::lanes::{Job, WIDTH, dispatch};
 pub(super) struct Sample {
     columns: [Vec<f64>; 3],
     count: usize,
-    /// Unit directions in which sensors saw the points; none where that is not known.
-    rays: Vec<Vector>,
+    /// Unit directions in which sensors saw the points, zero for the padding; none where that is not known.
+    rays: [Vec<f64>; 3],
 }
 
 /// Where padding stands: far from any body in normalised coordinates.
@@ -25,13 +27,37 @@ impl Sample {
     }
 
     /// Points and the directions in which they were seen.
-    pub(super) fn seen(points: impl Iterator<Item = Vector>, rays: Vec<Vector>) -> Self {
-        Self { rays, ..Self::new(points) }
+    pub(super) fn seen(
+        points: impl Iterator<Item = Vector>,
+        rays: impl Iterator<Item = Vector>,
+    ) -> Self {
+        let mut sample = Self::new(points);
+        sample.rays = into_columns(rays, sample.columns[0].len());
+        sample
+    }
+
+    /// Takes the points of another sample, each moved along its ray by its way.
+    pub(super) fn set_along(&mut self, from: &Self, ways: &[f64]) {
+        self.count = from.count;
+        for ((column, start), ray) in self.columns.iter_mut().zip(&from.columns).zip(&from.rays) {
+            column.clear();
+            column.extend(start.iter().zip(ray).zip(ways).map(|((x, r), way)| x + r * way));
+        }
     }
 
     /// Unit directions in which sensors saw the points; none where that is not known.
-    pub(super) fn rays(&self) -> &[Vector] {
+    pub(super) const fn rays(&self) -> &[Vec<f64>; 3] {
         &self.rays
+    }
+
+    /// True where these directions are known.
+    pub(super) const fn has_rays(&self) -> bool {
+        !self.rays[0].is_empty()
+    }
+
+    /// Such a direction; they must be known.
+    pub(super) fn ray(&self, i: usize) -> Vector {
+        Vector::new(self.rays[0][i], self.rays[1][i], self.rays[2][i])
     }
 
     /// Takes other points, of which no directions are known.
@@ -45,7 +71,7 @@ impl Sample {
             y.push(p.y);
             z.push(p.z);
         }
-        self.rays.clear();
+        self.rays.iter_mut().for_each(Vec::clear);
         self.count = x.len();
         let padded = self.count.next_multiple_of(WIDTH);
         for column in [x, y, z] {
@@ -67,6 +93,18 @@ impl Sample {
     }
 }
 
+fn into_columns(vectors: impl Iterator<Item = Vector>, padded: usize) -> [Vec<f64>; 3] {
+    let mut columns = [(); 3].map(|()| Vec::with_capacity(padded));
+    for v in vectors {
+        columns.iter_mut().zip(v.iter()).for_each(|(column, x)| column.push(*x));
+    }
+    let known = !columns[0].is_empty();
+    columns.map(|mut column| {
+        column.resize(if known { padded } else { 0 }, 0.0);
+        column
+    })
+}
+
 /// First-order distances and their derivatives, a column a parameter; padded like the sample. Columns of parameters
 /// that the family lacks hold nothing of use.
 #[derive(Clone, Debug, Default)]
@@ -78,30 +116,40 @@ pub(super) struct Evaluation {
 impl Evaluation {
     /// Distances and derivatives of all points of `sample`.
     pub(super) fn fill(&mut self, s: &Parameters, sample: &Sample) {
-        let padded = sample.columns[0].len();
-        self.distances.resize(padded, 0.0);
-        for (_, row) in self.rows.iter_mut().enumerate().filter(|(k, _)| s.family.has(*k)) {
-            row.resize(padded, 0.0);
-        }
-        self.run::<true>(s, sample);
+        self.make_room(sample, |k| s.family.has(k));
+        self.run::<DERIVATIVES>(s, sample);
+    }
+
+    /// Distances and normals.
+    pub(super) fn fill_normals(&mut self, s: &Parameters, sample: &Sample) {
+        self.make_room(sample, |k| (POSITION..ROTATION).contains(&k));
+        self.run::<NORMALS>(s, sample);
     }
 
     /// Distances alone.
     pub(super) fn fill_distances(&mut self, s: &Parameters, sample: &Sample) {
-        self.distances.resize(sample.columns[0].len(), 0.0);
-        self.run::<false>(s, sample);
+        self.make_room(sample, |_| false);
+        self.run::<DISTANCES>(s, sample);
     }
 
-    fn run<const JACOBIAN: bool>(&mut self, s: &Parameters, sample: &Sample) {
+    fn make_room(&mut self, sample: &Sample, needs: impl Fn(usize) -> bool) {
+        let padded = sample.columns[0].len();
+        self.distances.resize(padded, 0.0);
+        for (_, row) in self.rows.iter_mut().enumerate().filter(|(k, _)| needs(*k)) {
+            row.resize(padded, 0.0);
+        }
+    }
+
+    fn run<const WHAT: u8>(&mut self, s: &Parameters, sample: &Sample) {
         const TAPERED_BENT: u8 = TAPERED | BENT;
         let out = self;
         match s.family {
-            Family::Superellipsoid => dispatch(Fill::<0, JACOBIAN> { s, sample, out }),
-            Family::Supertoroid => dispatch(Fill::<RINGED, JACOBIAN> { s, sample, out }),
-            Family::Tapered => dispatch(Fill::<TAPERED, JACOBIAN> { s, sample, out }),
-            Family::Bent => dispatch(Fill::<BENT, JACOBIAN> { s, sample, out }),
-            Family::Twisted => dispatch(Fill::<TWISTED, JACOBIAN> { s, sample, out }),
-            Family::TaperedBent => dispatch(Fill::<TAPERED_BENT, JACOBIAN> { s, sample, out }),
+            Family::Superellipsoid => dispatch(Fill::<0, WHAT> { s, sample, out }),
+            Family::Supertoroid => dispatch(Fill::<RINGED, WHAT> { s, sample, out }),
+            Family::Tapered => dispatch(Fill::<TAPERED, WHAT> { s, sample, out }),
+            Family::Bent => dispatch(Fill::<BENT, WHAT> { s, sample, out }),
+            Family::Twisted => dispatch(Fill::<TWISTED, WHAT> { s, sample, out }),
+            Family::TaperedBent => dispatch(Fill::<TAPERED_BENT, WHAT> { s, sample, out }),
         }
     }
 
@@ -109,11 +157,6 @@ impl Evaluation {
     /// curvature turns it on the way to the point.
     pub(super) fn outwards(&self, i: usize) -> Vector {
         -Vector::from_fn(|k, _| self.rows[POSITION + k][i])
-    }
-
-    /// The unit outward normal at a point, by the same approximation.
-    pub(super) fn normal(&self, i: usize) -> Vector {
-        self.outwards(i).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
     }
 
     /// The derivatives at one point.
@@ -131,13 +174,13 @@ pub(super) fn distances(s: &Parameters, points: impl Iterator<Item = Vector>) ->
     evaluation.distances
 }
 
-struct Fill<'a, const PARTS: u8, const JACOBIAN: bool> {
+struct Fill<'a, const PARTS: u8, const WHAT: u8> {
     s: &'a Parameters,
     sample: &'a Sample,
     out: &'a mut Evaluation,
 }
 
-impl<const PARTS: u8, const JACOBIAN: bool> Job for Fill<'_, PARTS, JACOBIAN> {
+impl<const PARTS: u8, const WHAT: u8> Job for Fill<'_, PARTS, WHAT> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let [x, y, z] = &self.sample.columns;
@@ -145,14 +188,16 @@ impl<const PARTS: u8, const JACOBIAN: bool> Job for Fill<'_, PARTS, JACOBIAN> {
         let blocks = blocks.zip(z.as_chunks::<WIDTH>().0).enumerate();
         let mut block = Block::new();
         for (b, ((x, y), z)) in blocks {
-            evaluate::<FUSED, PARTS, JACOBIAN>(self.s, [x, y, z], &mut block);
+            evaluate::<FUSED, PARTS, WHAT>(self.s, [x, y, z], &mut block);
             let at = b * WIDTH..(b + 1) * WIDTH;
             self.out.distances[at.clone()].copy_from_slice(&block.distance);
-            if !JACOBIAN {
-                continue;
-            }
+            let wanted = |k: usize| match WHAT {
+                DISTANCES => false,
+                NORMALS => (POSITION..ROTATION).contains(&k),
+                _ => self.s.family.has(k),
+            };
             for (k, (column, values)) in self.out.rows.iter_mut().zip(&block.rows).enumerate() {
-                if self.s.family.has(k) {
+                if wanted(k) {
                     column[at.clone()].copy_from_slice(values);
                 }
             }

@@ -18,8 +18,8 @@ use super::columns::Evaluation;
 use super::parameters::{COUNT, EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
 use super::sights::Sights;
-use super::solver::Hypothesis;
-use super::terms::Sight;
+use super::solver::{Hypothesis, normal_equations};
+use super::terms::{Normal, Sight};
 
 /// Precision of the prior of every parameter in normalised units: a deviation of 1.
 const PRIOR: f64 = 1.0;
@@ -78,25 +78,22 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     }
     let index: Vec<usize> = (0..NAMES.len()).filter(|k| s.family.has(*k)).collect();
     let n = index.len();
-    let mut information = DMatrix::<f64>::zeros(n, n);
-    let mut scatter = information.clone();
-    let mut pull = DVector::<f64>::zeros(n);
-    for i in 0..cloud.fine.len() {
-        let d = at.distances[i];
-        let curvature = h.mixture.curvature(d);
-        let slope = h.mixture.weight(d) * d;
-        for (j, row) in index.iter().enumerate() {
-            let a = at.rows[*row][i];
-            pull[j] += slope * a;
-            for (k, column) in index[..=j].iter().enumerate() {
-                let product = a * at.rows[*column][i];
-                information[(j, k)] += curvature * product;
-                scatter[(j, k)] += slope * slope * product;
-            }
-        }
-    }
-    information.fill_upper_triangle_with_lower_triangle();
-    scatter.fill_upper_triangle_with_lower_triangle();
+    let counted = cloud.fine.len();
+    let (mut weights, mut curvatures, mut squares, mut buffer) = (vec![], vec![], vec![], vec![]);
+    h.mixture.weigh(&at.distances, counted, &mut weights);
+    let distances = &at.distances[..counted];
+    curvatures.extend(distances.iter().map(|d| h.mixture.curvature(*d)));
+    squares.extend(distances.iter().zip(&weights).map(|(d, w)| (w * d) * (w * d)));
+    curvatures.resize(weights.len(), 0.0);
+    squares.resize(weights.len(), 0.0);
+    let mut sums = |weights: &[f64]| normal_equations(s.family, &at, weights, &mut buffer);
+    let symmetric = |sums: &Normal| {
+        DMatrix::from_fn(n, n, |j, k| sums.matrix[index[j.max(k)]][index[j.min(k)]])
+    };
+    let mut information = symmetric(&sums(&curvatures));
+    let mut scatter = symmetric(&sums(&squares));
+    let pulls = sums(&weights).gradient;
+    let mut pull = DVector::from_fn(n, |j, _| pulls[index[j]]);
     // all points count, not only those that were looked at
     let total = cloud.total as f64;
     let more = total / cloud.fine.len() as f64;

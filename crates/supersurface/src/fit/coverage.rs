@@ -10,6 +10,7 @@
 use std::f64::consts::PI;
 
 use super::columns::{Sample, distances};
+use super::neighbours::Neighbours;
 use super::parameters::Parameters;
 use super::prepare::Normalised;
 use super::samples::sample;
@@ -45,7 +46,7 @@ fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
     let density = on.len().max(1) as f64 / s.area();
     let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
     let due = PI * square * density;
-    let found = |probe: &Vector| on.iter().filter(|p| (*p - probe).norm_squared() < square).count();
-    let shares = probes.iter().map(|probe| (found(probe) as f64 / due).min(1.0));
+    let found = Neighbours::among(on.into_iter());
+    let shares = probes.iter().map(|p| (found.within(p, square) as f64 / due).min(1.0));
     shares.sum::<f64>() / probes.len().max(1) as f64
 }

@@ -95,9 +95,16 @@ fn usable(v: f64) -> f64 {
     if v.abs() < 1e100 { v } else { 0.0 }
 }
 
-/// Distances of a block of points and, with `JACOBIAN`, their derivatives by all parameters of the family.
+/// What is evaluated: distances alone, with unit normals, or with derivatives by all parameters of the family.
+pub(super) const DISTANCES: u8 = 0;
+/// See [`DISTANCES`]; normals stand, with their signs turned, where the derivatives by the position do.
+pub(super) const NORMALS: u8 = 1;
+/// See [`DISTANCES`].
+pub(super) const DERIVATIVES: u8 = 2;
+
+/// Evaluates a block of points.
 #[inline(always)]
-pub(super) fn evaluate<const FUSED: bool, const PARTS: u8, const JACOBIAN: bool>(
+pub(super) fn evaluate<const FUSED: bool, const PARTS: u8, const WHAT: u8>(
     s: &Parameters,
     [x, y, z]: [&[f64; WIDTH]; 3],
     out: &mut Block,
@@ -156,12 +163,19 @@ pub(super) fn evaluate<const FUSED: bool, const PARTS: u8, const JACOBIAN: bool>
         let ig = 1.0 / g;
         let d = (1.0 - ig) * steady;
         out.distance[i] = if d.abs() < 1e100 { d } else { FAR };
-        if !JACOBIAN {
+        if WHAT == DISTANCES {
+            continue;
+        }
+        let n = normal.map(|v| v * steady);
+        if WHAT == NORMALS {
+            let [nx, ny, nz] = n;
+            out.rows[POSITION][i] = usable(-(r.m11 * nx + r.m12 * ny + r.m13 * nz));
+            out.rows[POSITION + 1][i] = usable(-(r.m21 * nx + r.m22 * ny + r.m23 * nz));
+            out.rows[POSITION + 2][i] = usable(-(r.m31 * nx + r.m32 * ny + r.m33 * nz));
             continue;
         }
 
         // along the normal
-        let n = normal.map(|v| v * steady);
         let straightened = straight.as_ref().map_or(n, |(stage, _)| stage.forward(&n));
         let turned = untwisted.as_ref().map_or(straightened, |stage| stage.forward(&straightened));
         let u = untapered.as_ref().map_or(turned, |(stage, _)| stage.forward(&turned));

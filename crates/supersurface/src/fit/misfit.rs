@@ -6,12 +6,14 @@
 //! ```
 
 use super::columns::distances;
+use super::neighbours::Neighbours;
 use super::prepare::Normalised;
 use super::search::EXACT;
 use super::solver::Hypothesis;
 use crate::Vector;
-use crate::numeric::lanes::WIDTH;
 
+/// Nearest points among which is another: some are measured twice.
+const LOOKED_AT: usize = 4;
 /// Points whose neighbours are sought.
 const PROBED: usize = 300;
 
@@ -31,34 +33,15 @@ pub(super) fn correlation(cloud: &Normalised, h: &Hypothesis) -> f64 {
         .collect();
     // noise lies outside of a convex body on the average
     let mean = on.iter().map(|q| q.1).sum::<f64>() / on.len().max(1) as f64;
-    // columns, so that the search vectorises
-    let columns: [Vec<f64>; 3] = std::array::from_fn(|k| on.iter().map(|q| q.0[k]).collect());
-    let mut squares = vec![0.0; on.len()];
+    let mut neighbours = Neighbours::among(on.iter().map(|q| q.0));
     let (mut product, mut square) = (0.0, 1e-300);
     for (p, d) in on.iter().step_by(on.len().div_ceil(PROBED).max(1)) {
-        for (i, s) in squares.iter_mut().enumerate() {
-            let (dx, dy, dz) = (columns[0][i] - p.x, columns[1][i] - p.y, columns[2][i] - p.z);
-            let apart = dx * dx + dy * dy + dz * dz;
-            // not the point itself
-            *s = if apart > 0.0 { apart } else { f64::INFINITY };
-        }
-        let least = least(&squares);
-        if let Some(nearest) = squares.iter().position(|s| *s == least && s.is_finite()) {
-            product += (d - mean) * (on[nearest].1 - mean);
+        // not the point itself
+        let others = neighbours.nearest(p, LOOKED_AT).iter().filter(|n| n.0 > 0.0);
+        if let Some((_, nearest)) = others.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            product += (d - mean) * (on[*nearest as usize].1 - mean);
             square += (d - mean) * (d - mean);
         }
     }
     product / square
-}
-
-/// The least of the values, eight side by side.
-fn least(values: &[f64]) -> f64 {
-    let mut lanes = [f64::INFINITY; WIDTH];
-    let (blocks, rest) = values.as_chunks::<WIDTH>();
-    for block in blocks {
-        for (least, v) in lanes.iter_mut().zip(block) {
-            *least = if v < least { *v } else { *least };
-        }
-    }
-    lanes.iter().chain(rest).fold(f64::INFINITY, |least, v| least.min(*v))
 }

@@ -37,6 +37,7 @@ mod judge;
 mod kernel;
 mod mirror;
 mod misfit;
+mod neighbours;
 mod noise;
 mod parameters;
 mod patches;

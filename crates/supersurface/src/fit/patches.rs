@@ -3,6 +3,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
+use super::neighbours::Neighbours;
 use super::start::quantile;
 use crate::Vector;
 
@@ -32,37 +33,14 @@ pub(super) fn patches(points: &[Vector], from: f64) -> Vec<Patch> {
     }
     let stride = points.len().div_ceil(AMONG);
     let among: Vec<Vector> = points.iter().step_by(stride).copied().collect();
-    let columns: [Vec<f32>; 3] =
-        std::array::from_fn(|k| among.iter().map(|p| p[k] as f32).collect());
-    let mut squares = vec![0f32; among.len()];
-    let mut near: Vec<(f32, u32)> = Vec::with_capacity(4 * NEIGHBOURS);
-    let mut reach = f32::INFINITY;
+    let mut neighbours = Neighbours::among(among.iter().copied());
     let stride = points.len().div_ceil(LOOKED_AT);
     let mut found = Vec::with_capacity(LOOKED_AT);
     let first = (from * stride as f64) as usize;
     for p in points.iter().skip(first).step_by(stride) {
-        let [x, y, z] = [p.x as f32, p.y as f32, p.z as f32];
-        for (i, square) in squares.iter_mut().enumerate() {
-            let (dx, dy, dz) = (columns[0][i] - x, columns[1][i] - y, columns[2][i] - z);
-            *square = dx * dx + dy * dy + dz * dz;
-        }
-        // those within twice the last radius, or more where these are too few
-        loop {
-            near.clear();
-            let within = squares.iter().zip(0..).filter(|(s, _)| **s < reach);
-            near.extend(within.map(|(s, i)| (*s, i)));
-            if near.len() > NEIGHBOURS || reach.is_infinite() {
-                break;
-            }
-            reach *= 4.0;
-        }
-        if near.len() <= NEIGHBOURS {
-            continue;
-        }
-        near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
-        let radius = near[NEIGHBOURS].0;
-        reach = (4.0 * radius).max(f32::MIN_POSITIVE);
-        let scatter = scatter(near[..=NEIGHBOURS].iter().map(|n| &among[n.1 as usize]));
+        let near = neighbours.nearest(p, NEIGHBOURS + 1);
+        let Some((square, _)) = near.last() else { continue };
+        let scatter = scatter(near.iter().map(|n| &among[n.1 as usize]));
         let eigen = SymmetricEigen::new(scatter);
         let least = eigen.eigenvalues.imin();
         let share = eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300);
@@ -70,7 +48,7 @@ pub(super) fn patches(points: &[Vector], from: f64) -> Vec<Patch> {
             point: *p,
             normal: eigen.eigenvectors.column(least).into(),
             flatness: 1.0 - 3.0 * share,
-            radius: f64::from(radius).sqrt(),
+            radius: square.sqrt(),
         });
     }
     found

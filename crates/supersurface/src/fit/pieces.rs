@@ -3,10 +3,10 @@
 //! Clusters by density (DBSCAN): a point with enough neighbours within a radius joins them to its piece. The radius is
 //! tied to the cloud's own spacing.
 
-use std::collections::HashMap;
-
+use super::neighbours::Neighbours;
 use super::start::quantile;
-use crate::Vector;
+use crate::cloud::VoxelGrid;
+use crate::{Point, Vector};
 
 /// Neighbours within the radius that make a point part of a surface.
 const NEIGHBOURS: usize = 5;
@@ -33,21 +33,9 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
     if !(radius > 0.0 && radius.is_finite()) {
         return whole();
     }
-    let cell = |p: &Vector| [0, 1, 2].map(|k| (p[k] / radius).floor() as i64);
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    for (p, i) in points.iter().zip(0..) {
-        cells.entry(cell(p)).or_default().push(i);
-    }
-    let near = |i: usize, found: &mut Vec<usize>| {
-        let [x, y, z] = cell(&points[i]);
-        found.clear();
-        for (dx, dy, dz) in (0..27).map(|c| (c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1)) {
-            let there = cells.get(&[x + dx, y + dy, z + dz]).into_iter().flatten();
-            let there = there.map(|j| *j as usize);
-            found.extend(
-                there.filter(|j| (points[*j] - points[i]).norm_squared() < radius * radius),
-            );
-        }
+    let places: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
+    let Some(grid) = VoxelGrid::new(&places, 0..places.len() as u32, radius) else {
+        return whole();
     };
     let (mut piece, mut sizes) = (vec![usize::MAX; points.len()], Vec::new());
     let (mut open, mut found) = (Vec::new(), Vec::new());
@@ -58,7 +46,8 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
         let mut size = 0;
         open.push(i);
         while let Some(at) = open.pop() {
-            near(at, &mut found);
+            found.clear();
+            grid.within(&places[at], radius, |j, _| found.push(j as usize));
             // the point itself is among them
             if found.len() <= NEIGHBOURS {
                 continue;
@@ -87,17 +76,10 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
 
 /// Median distance of the sixth neighbour.
 fn spacing(points: &[Vector]) -> f64 {
-    let mut squares = Vec::with_capacity(points.len());
+    let mut neighbours = Neighbours::among(points.iter().copied());
     let stride = points.len().div_ceil(MEASURED).max(1);
-    let mut all: Vec<f64> = points
-        .iter()
-        .step_by(stride)
-        .map(|p| {
-            squares.clear();
-            squares.extend(points.iter().map(|q| (p - q).norm_squared()));
-            let k = (NEIGHBOURS + 1).min(squares.len() - 1);
-            squares.select_nth_unstable_by(k, f64::total_cmp).1.sqrt()
-        })
-        .collect();
+    // the point itself is the first
+    let mut sixth = |p| neighbours.nearest(p, NEIGHBOURS + 2).last().map_or(0.0, |n| n.0.sqrt());
+    let mut all: Vec<f64> = points.iter().step_by(stride).map(&mut sixth).collect();
     quantile(&mut all, 0.5)
 }

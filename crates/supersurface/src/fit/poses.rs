@@ -64,8 +64,8 @@ impl<'a> Moved<'a> {
     fn by(cloud: &'a Normalised, moves: Vec<Isometry3<f64>>) -> Self {
         let at = |p: &Vector, k: usize| (moves[k] * Point::from(*p)).coords;
         let points = cloud.points.iter().zip(&cloud.seen_by).map(|(p, k)| at(p, *k));
-        let rays = cloud.fine.rays().iter().zip(&cloud.seen_by).map(|(r, k)| moves[*k] * r);
-        let sample = Sample::seen(points, rays.collect());
+        let rays = cloud.seen_by.iter().enumerate().map(|(i, k)| moves[*k] * cloud.fine.ray(i));
+        let sample = Sample::seen(points, rays);
         let mut terms = cloud.terms.clone();
         for (k, eye) in terms.eyes.iter_mut().enumerate() {
             eye.place = at(&eye.place, k);
@@ -104,7 +104,7 @@ struct Settling<'a> {
 impl<'a> Settling<'a> {
     fn new(body: Parameters, mixture: Mixture, views: Moved<'a>) -> Self {
         let mut at = Evaluation::default();
-        if views.sample.rays().is_empty() {
+        if !views.sample.has_rays() {
             at.fill(&body, &views.sample);
         } else {
             Sights::default().fill(&body, &views.sample, &mut at);

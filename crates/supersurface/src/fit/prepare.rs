@@ -138,8 +138,8 @@ impl Seen<'_> {
     fn sample(&self, sensors: &[Vector], count: usize) -> Sample {
         let (points, by) = self.chosen(spread_over(self.points.len(), count));
         let away = |(p, k): (&Vector, &usize)| Some((p - sensors.get(*k)?).normalize());
-        let rays = points.iter().zip(&by).filter_map(away).collect();
-        Sample::seen(points.into_iter(), rays)
+        let rays = points.iter().zip(&by).filter_map(away);
+        Sample::seen(points.iter().copied(), rays)
     }
 }
 

@@ -61,7 +61,7 @@ impl Rays {
         for _ in 0..halvings {
             let middle = |l: &Line| 0.5 * (l.low + l.high);
             self.places.set(self.lines.iter().map(|l| from + l.way * middle(l)));
-            self.evaluation.fill(s, &self.places);
+            self.evaluation.fill_normals(s, &self.places);
             for (i, line) in self.lines.iter_mut().enumerate() {
                 let t = middle(line);
                 line.take(t, self.evaluation.distances[i]);

@@ -117,15 +117,18 @@ impl Job for OnCurve<'_> {
         for block in self.points.chunks_mut(WIDTH) {
             let mut angles = [0.0; WIDTH];
             angles.iter_mut().zip(&*block).for_each(|(a, p)| *a = p[0]);
-            let places = angles.map(|a| {
-                let (sin, cos) = sin_cos::<FUSED>(a);
+            // a loop, as closures are not compiled for wider registers
+            let mut places = [[0.0; 2]; WIDTH];
+            for i in 0..WIDTH {
+                let (sin, cos) = sin_cos::<FUSED>(angles[i]);
                 let (u, v) = (cos.abs(), sin.abs());
                 let (large, small) = if u > v { (u, v) } else { (v, u) };
-                let ratio = if small > 1e-300 { small / large } else { 1e-300 };
+                let ratio = small / large;
+                let ratio = if ratio > 1e-300 { ratio } else { 1e-300 };
                 let t = exp::<FUSED>(self.power * ln::<FUSED>(ratio));
                 let length = large * exp::<FUSED>(ln::<FUSED>(1.0 + t) / self.power);
-                [cos / length, sin / length]
-            });
+                places[i] = [cos / length, sin / length];
+            }
             block.copy_from_slice(&places[..block.len()]);
         }
     }

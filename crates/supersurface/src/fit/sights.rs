@@ -6,8 +6,8 @@
 //! noise runs along the surface, look larger. Where a ray grazes or misses the surface, `c` has a floor.
 
 use super::columns::{Evaluation, Sample};
-use super::parameters::Parameters;
-use crate::Vector;
+use super::parameters::{POSITION, Parameters};
+use crate::numeric::lanes::{Job, dispatch};
 
 /// Steps along the ray.
 const STEPS: usize = 2;
@@ -19,7 +19,8 @@ const LONGEST: f64 = 0.3;
 /// Buffers of the way along the rays.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sights {
-    places: Vec<Vector>,
+    ways: Vec<f64>,
+    secants: Vec<f64>,
     sample: Sample,
     there: Evaluation,
 }
@@ -28,32 +29,49 @@ impl Sights {
     /// Fills `out` with the residuals of the points along the rays in which they were seen, positive before the surface,
     /// and their derivatives.
     pub(super) fn fill(&mut self, s: &Parameters, points: &Sample, out: &mut Evaluation) {
-        let rays = points.rays();
-        self.places.clear();
-        self.places.extend(points.points());
+        self.ways.clear();
+        self.ways.resize(points.rays()[0].len(), 0.0);
+        self.secants.resize(self.ways.len(), 0.0);
         for _ in 0..STEPS {
-            self.sample.set(self.places.iter().copied());
-            self.there.fill(s, &self.sample);
-            for (i, place) in self.places.iter_mut().enumerate() {
-                let step = self.there.distances[i] / slope(&self.there, i, &rays[i]);
-                *place += rays[i] * step.clamp(-LONGEST, LONGEST);
+            self.sample.set_along(points, &self.ways);
+            self.there.fill_normals(s, &self.sample);
+            dispatch(Secants { at: &self.there, points, out: &mut self.secants });
+            let steps = self.there.distances.iter().zip(&self.secants).map(|(d, c)| d * c);
+            for (way, step) in self.ways.iter_mut().zip(steps) {
+                *way += step.clamp(-LONGEST, LONGEST);
             }
         }
-        self.sample.set(self.places.iter().copied());
+        self.sample.set_along(points, &self.ways);
         out.fill(s, &self.sample);
-        for (i, x) in points.points().enumerate() {
-            let weight = 1.0 / slope(out, i, &rays[i]);
-            out.distances[i] = (self.places[i] - x).dot(&rays[i]) + out.distances[i] * weight;
-            for (k, row) in out.rows.iter_mut().enumerate() {
-                if s.family.has(k) {
-                    row[i] *= weight;
-                }
-            }
+        dispatch(Secants { at: out, points, out: &mut self.secants });
+        for ((d, c), way) in out.distances.iter_mut().zip(&self.secants).zip(&self.ways) {
+            *d = way + *d * c;
+        }
+        for (_, row) in out.rows.iter_mut().enumerate().filter(|(k, _)| s.family.has(*k)) {
+            row.iter_mut().zip(&self.secants).for_each(|(v, c)| *v *= c);
         }
     }
 }
 
-/// Cosine between the ray and the surface that faces it, but for the floor.
-fn slope(at: &Evaluation, i: usize, ray: &Vector) -> f64 {
-    (-at.normal(i).dot(ray)).max(GRAZING)
+/// Of the angles between the rays and the normals of the surface that faces them, but for the floor of the cosine.
+struct Secants<'a> {
+    at: &'a Evaluation,
+    points: &'a Sample,
+    out: &'a mut [f64],
+}
+
+impl Job for Secants<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let [x, y, z] = self.points.rays();
+        let [u, v, w] = std::array::from_fn(|k| &self.at.rows[POSITION + k]);
+        let inwards = u.iter().zip(v).zip(w);
+        for (out, (((x, y), z), ((u, v), w))) in
+            self.out.iter_mut().zip(x.iter().zip(y).zip(z).zip(inwards))
+        {
+            let length = (u * u + v * v + w * w).sqrt();
+            let cosine = (x * u + y * v + z * w) / (length + 1e-12);
+            *out = 1.0 / if cosine > GRAZING { cosine } else { GRAZING };
+        }
+    }
 }

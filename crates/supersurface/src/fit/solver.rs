@@ -92,15 +92,7 @@ impl Workspace {
     /// The points' part of the normal equations at the present body.
     fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> Normal {
         let cost = mixture.weigh(&self.now.distances, points, &mut self.weights);
-        self.weighted.resize(self.weights.len(), 0.0);
-        let mut normal = Normal::zero();
-        dispatch(Accumulate {
-            family,
-            evaluation: &self.now,
-            weights: &self.weights,
-            weighted: &mut self.weighted,
-            normal: &mut normal,
-        });
+        let mut normal = normal_equations(family, &self.now, &self.weights, &mut self.weighted);
         normal.cost = cost;
         normal
     }
@@ -129,7 +121,20 @@ impl Workspace {
     }
 }
 
-/// `Jᵀ W J` and `Jᵀ W d`, a column at a time.
+/// `Jᵀ W J` (its lower triangle) and `Jᵀ W d`; `weighted` is a buffer.
+pub(super) fn normal_equations(
+    family: Family,
+    evaluation: &Evaluation,
+    weights: &[f64],
+    weighted: &mut Vec<f64>,
+) -> Normal {
+    weighted.resize(weights.len(), 0.0);
+    let mut normal = Normal::zero();
+    dispatch(Accumulate { family, evaluation, weights, weighted, normal: &mut normal });
+    normal
+}
+
+/// The same, a column at a time.
 struct Accumulate<'a> {
     family: Family,
     evaluation: &'a Evaluation,

@@ -147,14 +147,16 @@ impl Terms {
         points: &Sample,
         evaluation: &Evaluation,
     ) -> f64 {
-        let rays = points.rays();
+        if !points.has_rays() {
+            return 0.0;
+        }
         let step = (6.0 * mixture.scale).max(LEAST_HIDING);
         let away = |i: &usize| {
             let normal = evaluation.outwards(*i);
-            normal.dot(&rays[*i]) > 0.4 * normal.norm()
+            normal.dot(&points.ray(*i)) > 0.4 * normal.norm()
         };
-        let suspects: Vec<usize> = (0..rays.len()).filter(away).collect();
-        let before = suspects.iter().map(|i| points.point(*i) - rays[*i] * step);
+        let suspects: Vec<usize> = (0..points.len()).filter(away).collect();
+        let before = suspects.iter().map(|i| points.point(*i) - points.ray(*i) * step);
         let depths = distances(s, before);
         let hidden = suspects.iter().zip(depths).filter(|(_, d)| *d < -0.25 * step);
         hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i])).sum()
