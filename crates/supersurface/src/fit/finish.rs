@@ -37,9 +37,12 @@ pub(super) fn finish(
     let to_the_end = |h: &Hypothesis, work: &mut Workspace| {
         refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
-    let best = to_the_end(&pool[0], work);
     let close = WORSE * cloud.middle.len() as f64;
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
+    let best = match (terms.sight, cloud.effort) {
+        (Sight::OneSide, Effort::Thorough) => pool[0],
+        _ => to_the_end(&pool[0], work),
+    };
     let volume = match terms.sight {
         Sight::AllAround { volume } => volume,
         Sight::Partly => {
@@ -48,13 +51,11 @@ pub(super) fn finish(
         }
         Sight::OneSide if cloud.effort == Effort::Quick => return best,
         Sight::OneSide => {
-            let others: Vec<Hypothesis> =
-                near.take(SIGHTED - 1).map(|h| to_the_end(h, work)).collect();
-            let along = others.iter().chain([&best]).map(|h| {
-                let last = Schedule { along_rays: true, ..schedule(10, RAYS, h.mixture.scale) };
+            let along = pool[..1].iter().chain(near.take(SIGHTED - 1)).map(|h| {
+                let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
                 refine(h, &cloud.fine, terms, &last, work)
             });
-            return cheapest(along.collect()).unwrap_or(best);
+            return cheapest(along.collect()).unwrap_or(pool[0]);
         }
     };
     let mut rivals = vec![best];

@@ -14,7 +14,7 @@ use crate::Vector;
 use crate::numeric::lanes::{Job, WIDTH, dispatch, exp};
 use crate::numeric::random::Stream;
 
-/// Exponent from which a Gaussian's value is left out: `e^-16` of its peak.
+/// Exponent from which a Gaussian's value may be left out: `e^-16` of its peak.
 const NEGLIGIBLE: f64 = 16.0;
 /// Least and most samples of a surface.
 const SAMPLES: [f64; 2] = [600.0, 3000.0];
@@ -32,15 +32,15 @@ pub(super) fn smeared_cost(
     let mut surface = Vec::with_capacity(count);
     // the same strata for every body, so that chance does not choose between them
     sample(s, count.next_multiple_of(WIDTH), &mut Stream::new(7, 1), &mut surface);
-    let columns: [Vec<f64>; 3] = std::array::from_fn(|k| surface.iter().map(|p| p[k]).collect());
+    let surface = Blocks::new(&surface);
     let peak = (1.0 - mixture.outliers)
         / (surface.len() as f64 * (std::f64::consts::TAU * sigma * sigma).powi(3).sqrt());
     let uniform = mixture.outliers.max(1e-3) / volume;
     let (mut cost, mut slope) = (0.0, 0.0);
+    let precision = 0.5 / (sigma * sigma);
     for p in points {
         let mut sums = [0.0; 2];
-        let precision = 0.5 / (sigma * sigma);
-        dispatch(Smear { columns: &columns, p, precision, sums: &mut sums });
+        dispatch(Smear { surface: &surface, p, precision, sums: &mut sums });
         let density = peak * sums[0] + uniform;
         cost -= density.ln();
         // by ln σ: the kernel's mean square distance over σ², less its dimensions
@@ -51,9 +51,38 @@ pub(super) fn smeared_cost(
     cost - slope * slope / (4.0 * inliers.max(1.0))
 }
 
-/// `Σ exp(-d²/2σ²)` and `Σ d² exp(-d²/2σ²)`.
+/// Samples of a surface, eight neighbours in a block with a ball around them.
+struct Blocks {
+    samples: Vec<[[f64; WIDTH]; 3]>,
+    /// Coordinates of the balls' middles and their radii, padded with balls of nothing that are far.
+    balls: [Vec<f64>; 4],
+}
+
+impl Blocks {
+    fn new(samples: &[Vector]) -> Self {
+        let blocks = samples.as_chunks::<WIDTH>().0;
+        let mut balls = [(); 4].map(|()| Vec::with_capacity(blocks.len() + WIDTH));
+        for block in blocks {
+            let middle = block.iter().sum::<Vector>() / WIDTH as f64;
+            let radius = block.iter().map(|p| (p - middle).norm_squared()).fold(0.0, f64::max);
+            let ball = [middle.x, middle.y, middle.z, radius.sqrt()];
+            balls.iter_mut().zip(ball).for_each(|(column, value)| column.push(value));
+        }
+        for (column, far) in balls.iter_mut().zip([1e6, 1e6, 1e6, 0.0]) {
+            column.resize(blocks.len().next_multiple_of(WIDTH), far);
+        }
+        let columns = |block: &[Vector; WIDTH]| [0, 1, 2].map(|k| block.map(|p| p[k]));
+        Self { samples: blocks.iter().map(columns).collect(), balls }
+    }
+
+    const fn len(&self) -> usize {
+        self.samples.len() * WIDTH
+    }
+}
+
+/// `Σ exp(-d²/2σ²)` and `Σ d² exp(-d²/2σ²)` over the samples that are not too far.
 struct Smear<'a> {
-    columns: &'a [Vec<f64>; 3],
+    surface: &'a Blocks,
     p: &'a Vector,
     precision: f64,
     sums: &'a mut [f64; 2],
@@ -62,22 +91,28 @@ struct Smear<'a> {
 impl Job for Smear<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let [x, y, z] = self.columns;
-        let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
+        let reach = (NEGLIGIBLE / self.precision).sqrt();
+        let [x, y, z, radius] = self.surface.balls.each_ref().map(|c| c.as_chunks::<WIDTH>().0);
         let mut lanes = [[0.0; WIDTH]; 2];
-        for ((x, y), z) in blocks.zip(z.as_chunks::<WIDTH>().0) {
-            let squares: [f64; WIDTH] = std::array::from_fn(|i| {
-                let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
-                dx * dx + dy * dy + dz * dz
-            });
-            // neighbours in the list are neighbours on the surface: most blocks are far
-            if squares.iter().all(|s| self.precision * s > NEGLIGIBLE) {
-                continue;
+        for (b, samples) in self.surface.samples.chunks(WIDTH).enumerate() {
+            let mut beyond = [0.0; WIDTH];
+            for i in 0..WIDTH {
+                let (dx, dy, dz) = (x[b][i] - self.p.x, y[b][i] - self.p.y, z[b][i] - self.p.z);
+                let within = reach + radius[b][i];
+                beyond[i] = dx * dx + dy * dy + dz * dz - within * within;
             }
-            for (i, square) in squares.iter().enumerate() {
-                let kernel = exp::<FUSED>(-self.precision * square);
-                lanes[0][i] += kernel;
-                lanes[1][i] += kernel * square;
+            for (samples, beyond) in samples.iter().zip(&beyond) {
+                if *beyond > 0.0 {
+                    continue;
+                }
+                let [x, y, z] = samples;
+                for i in 0..WIDTH {
+                    let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
+                    let square = dx * dx + dy * dy + dz * dz;
+                    let kernel = exp::<FUSED>(-self.precision * square);
+                    lanes[0][i] += kernel;
+                    lanes[1][i] += kernel * square;
+                }
             }
         }
         *self.sums = lanes.map(|l| l.iter().sum());
