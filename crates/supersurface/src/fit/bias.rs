@@ -71,17 +71,18 @@ impl Draws {
     /// Moments at the body of `h` of points drawn from another one with its noise.
     fn moments(&self, from: &Parameters, h: &Hypothesis, room: &mut Room) -> Moments {
         let cells = cells(from);
-        let draws = cells.iter().zip(&self.0).enumerate().flat_map(|(i, ((p, _), noise))| {
-            let noise = h.mixture.scale * noise;
-            [p + noise, p - noise].map(|mut p| {
-                if !from.family.is_deformed() {
-                    // the cells are those of an octant: its mirror images take turns
-                    (0..3).filter(|k| (5 * i) >> k & 1 == 1).for_each(|k| p[k] = -p[k]);
-                }
-                from.position + from.rotation * p
-            })
-        });
-        room.draws.set(draws);
+        let mirrored = !from.family.is_deformed();
+        // the cells are those of an octant: its mirror images take turns
+        let sign = |i: usize, k: usize| if mirrored && (5 * i) >> k & 1 == 1 { -1.0 } else { 1.0 };
+        let rotation = from.rotation.matrix();
+        let draw = |k: usize| {
+            let (i, opposite) = (k / 2, k % 2 == 1);
+            let scale = if opposite { -h.mixture.scale } else { h.mixture.scale };
+            let p = cells[i].0 + scale * self.0[i];
+            let p = Vector::new(sign(i, 0) * p.x, sign(i, 1) * p.y, sign(i, 2) * p.z);
+            from.position + rotation * p
+        };
+        room.draws.set((0..2 * cells.len()).map(draw));
         room.moments.of(h, &room.draws, |i| cells[i / 2].1)
     }
 }
