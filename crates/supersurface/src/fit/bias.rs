@@ -11,8 +11,8 @@
 //! which the right body fulfils in the mean (Fisher consistency: Hampel and others, *Robust Statistics*, §4.2), by
 //! Newton's steps. As both parts change alike with the body at which they are looked at, the derivative that is left is
 //! that of the expected score by the body from which the points are drawn: the information. The expectation is a sum
-//! over cells of the surface and opposite draws of noise, the same for all bodies, so that it is smooth; the derivative is
-//! kept up to date by Broyden's formula.
+//! over cells of the surface and opposite draws of noise, the same for all bodies, so that it is smooth; the derivative
+//! begins as that of least squares, without the curvature of the surface, and is kept up to date by Broyden's formula.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector, Rotation3};
 use super::columns::{Evaluation, Sample};
 use super::parameters::{BEND, COUNT, EXPONENT, POSITION, Parameters, RING, Row, TAPER, TWIST};
 use super::samples::{cells, columns};
-use super::solver::Hypothesis;
+use super::solver::{Hypothesis, normal_equations};
 use crate::Vector;
 use crate::numeric::lanes::{Job, dispatch, dot};
 use crate::numeric::random::Stream;
@@ -87,40 +87,50 @@ impl Draws {
     }
 }
 
-/// Buffers that are used again.
+/// Draws and their moments.
 #[derive(Default)]
 struct Room {
     draws: Sample,
     moments: Sums,
 }
 
+/// What moments are made of.
 #[derive(Default)]
 struct Sums {
     at: Evaluation,
+    /// Equivalent least squares' weights times the shares, and these times the distances.
     weights: Vec<f64>,
+    pulls: Vec<f64>,
+    belonging: f64,
 }
 
 impl Sums {
     /// Moments of points with shares, by a Gaussian's weights.
     fn of(&mut self, h: &Hypothesis, points: &Sample, share: impl Fn(usize) -> f64) -> Moments {
+        let family = h.parameters.family;
         self.at.fill(&h.parameters, points);
         h.mixture.weigh(&self.at.distances, points.len(), &mut self.weights);
-        let (mut belonging, mut square) = (0.0, 0.0);
-        let weights = self.weights[..points.len()].iter_mut().enumerate();
-        for ((i, weight), d) in weights.zip(&self.at.distances) {
-            *weight *= share(i);
-            belonging += *weight;
-            *weight *= d;
-            square += *weight * d;
-        }
-        belonging *= h.mixture.scale * h.mixture.scale;
-        let mut score = [0.0; COUNT];
-        let rows = self.at.rows.iter().zip(&mut score).enumerate();
-        for (_, (row, sum)) in rows.filter(|(k, _)| h.parameters.family.has(*k)) {
-            dispatch(Dot(&self.weights, row, sum));
-            *sum /= belonging;
-        }
-        Moments { score, square: square / belonging }
+        self.weights.iter_mut().take(points.len()).enumerate().for_each(|(i, w)| *w *= share(i));
+        self.belonging = self.weights.iter().sum::<f64>() * h.mixture.scale * h.mixture.scale;
+        self.pulls.clear();
+        self.pulls.extend(self.weights.iter().zip(&self.at.distances).map(|(w, d)| w * d));
+        let mean = |column: &[f64]| {
+            let mut sum = 0.0;
+            dispatch(Dot(&self.pulls, column, &mut sum));
+            sum / self.belonging
+        };
+        let rows = &self.at.rows;
+        let score = std::array::from_fn(|k| if family.has(k) { mean(&rows[k]) } else { 0.0 });
+        Moments { score, square: mean(&self.at.distances) }
+    }
+
+    /// The information a point has of some parameters, by the first derivatives alone.
+    fn information(&self, h: &Hypothesis, index: &[usize]) -> DMatrix<f64> {
+        let family = h.parameters.family;
+        let sums = normal_equations(family, &self.at, &self.weights, &mut Vec::new()).matrix;
+        DMatrix::from_fn(index.len(), index.len(), |j, k| {
+            sums[index[j.max(k)]][index[j.min(k)]] / self.belonging
+        })
     }
 }
 
@@ -139,16 +149,6 @@ impl Job for Dot<'_> {
 pub(super) fn information(h: &Hypothesis, index: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
     let (draws, mut room) = (Draws::new(&h.parameters), Room::default());
     let here = draws.moments(&h.parameters, h, &mut room);
-    (by_differences(h, &draws, &here, index, &mut room), pick(index, |k| here.score[k]))
-}
-
-fn by_differences(
-    h: &Hypothesis,
-    draws: &Draws,
-    here: &Moments,
-    index: &[usize],
-    room: &mut Room,
-) -> DMatrix<f64> {
     let s = &h.parameters;
     let mut out = DMatrix::zeros(index.len(), index.len());
     for (j, k) in index.iter().enumerate() {
@@ -156,10 +156,10 @@ fn by_differences(
         let back = (EXPONENT..POSITION).contains(k) && s.exponents[k - EXPONENT] > 1.0;
         let mut step: Row = [0.0; COUNT];
         step[*k] = if back { -STEP } else { STEP };
-        let there = draws.moments(&s.stepped(&step), h, room);
+        let there = draws.moments(&s.stepped(&step), h, &mut room);
         out.set_column(j, &pick(index, |i| (here.score[i] - there.score[i]) / step[*k]));
     }
-    out
+    (out, pick(index, |k| here.score[k]))
 }
 
 fn pick(index: &[usize], value: impl Fn(usize) -> f64) -> DVector<f64> {
@@ -173,19 +173,18 @@ pub(super) fn without_bias(h: &Hypothesis, points: &Sample) -> Hypothesis {
     let moves = |k: &usize| h.parameters.family.has(*k) && !(POSITION..TAPER).contains(k);
     let index: Vec<usize> = (0..COUNT).filter(moves).collect();
     let all = points.len() as f64;
-    let (draws, mut room, mut of_points) =
-        (Draws::new(&best.parameters), Room::default(), Sums::default());
-    let due = draws.moments(&best.parameters, &best, &mut room);
-    let prior = DMatrix::identity(index.len(), index.len()) / all;
-    let information = by_differences(&best, &draws, &due, &index, &mut room) + prior;
-    let mut excess = |h: &Hypothesis| {
+    let draws = Draws::new(&best.parameters);
+    let (mut of_draws, mut of_points) = (Room::default(), Sums::default());
+    let mut excess = |h: &Hypothesis, of_draws: &mut Room| {
         let seen = of_points.of(h, points, |_| 1.0);
-        let due = draws.moments(&h.parameters, h, &mut room);
+        let due = draws.moments(&h.parameters, h, of_draws);
         let noise = (seen.square / due.square).sqrt().clamp(0.8, 1.25);
         (pick(&index, |k| seen.score[k] - due.score[k]), noise)
     };
+    let (mut left, _) = excess(&best, &mut of_draws);
+    let prior = DMatrix::identity(index.len(), index.len()) / all;
+    let information = of_draws.moments.information(&best, &index) + prior;
     let Some(mut inverse) = information.try_inverse() else { return best };
-    let (mut left, _) = excess(&best);
     let mut share = 1.0;
     for _ in 0..TRIALS {
         let way = &inverse * &left;
@@ -197,7 +196,7 @@ pub(super) fn without_bias(h: &Hypothesis, points: &Sample) -> Hypothesis {
         let ways = index.iter().zip(way.iter());
         ways.for_each(|(k, w): (&usize, &f64)| step[*k] = (-share * w).clamp(-MOST, MOST));
         let mut trial = Hypothesis { parameters: best.parameters.stepped(&step), ..best };
-        let (there, noise) = excess(&trial);
+        let (there, noise) = excess(&trial, &mut of_draws);
         // Broyden's update by the way that was gone
         let gone = pick(&index, |k| value(&trial.parameters, k) - value(&best.parameters, k));
         let foreseen = &inverse * (&there - &left);

@@ -70,7 +70,8 @@ pub(super) fn finish(
     rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
     let corrected = rivals.iter().enumerate().map(|(i, h)| {
-        let fitted = if i == 0 { *h } else { to_the_end(h, work) };
+        let rough = Schedule { tolerance: 0.5, ..schedule(6, RAYS, h.mixture.scale) };
+        let fitted = if i == 0 { *h } else { refine(h, &cloud.fine, terms, &rough, work) };
         let unbiased = without_bias(&fitted, &cloud.fine);
         let cost = smeared_cost(&unbiased.parameters, &fitted.mixture, &some, noise, volume);
         Hypothesis { cost, ..unbiased }
