@@ -88,25 +88,22 @@ def run(args):
     listed = json.loads((args.data / "index.json").read_text())["cases"]
     truths = {case["id"]: case.get("gt", case["file"].rsplit(".", 1)[0] + ".gt.json") for case in listed}
     fitter = Supersurface(args.supersurface, args.timeout)
-    try:
+    if not args.json:
+        print(f"90 % intervals of {fitter.version}: share that holds the truth, in percent\n\n{HEADER}", flush=True)
+    rows, sides = [], {"all around": [], "one view": []}
+    for group, cases in groups.items():
+        if any(case.model != "superellipsoid" for case in cases):
+            continue
+        fits = [judge(fitter, case, args.data, truths) for case in cases]
+        sides["one view" if cases[0].viewpoint else "all around"] += fits
+        rows.append(summary(group, fits))
         if not args.json:
-            print(f"90 % intervals of {fitter.version}: share that holds the truth, in percent\n\n{HEADER}", flush=True)
-        rows, sides = [], {"all around": [], "one view": []}
-        for group, cases in groups.items():
-            if any(case.model != "superellipsoid" for case in cases):
-                continue
-            fits = [judge(fitter, case, args.data, truths) for case in cases]
-            sides["one view" if cases[0].viewpoint else "all around"] += fits
-            rows.append(summary(group, fits))
-            if not args.json:
-                print(line(rows[-1]), flush=True)
-        totals = [summary(name, fits) for name, fits in sides.items() if fits]
-        if args.json:
-            print(json.dumps({"supersurface": fitter.version, "classes": rows, "totals": totals}, indent=1))
-        else:
-            print("\n".join(["", *map(line, totals)]))
-    finally:
-        fitter.close()
+            print(line(rows[-1]), flush=True)
+    totals = [summary(name, fits) for name, fits in sides.items() if fits]
+    if args.json:
+        print(json.dumps({"supersurface": fitter.version, "classes": rows, "totals": totals}, indent=1))
+    else:
+        print("\n".join(["", *map(line, totals)]))
     return 0
 
 

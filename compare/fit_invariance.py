@@ -119,23 +119,20 @@ def run(args):
         text = "".join(f" {100 * sum(same) / len(some):7.1f}" for same in shares[:-1])
         return f"{name:20} {len(some):4}{text} {100 * sum(shares[-1]) / len(some):6.1f}"
 
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            for group, cases in groups.items():
-                some = []
-                for case in cases:
-                    try:
-                        found = compare(fitter, case, args, folder)
-                    except FitFailed as error:
-                        print(f"{case.id} as it is: {error}", file=sys.stderr)
-                        found = dict.fromkeys(args.scales, math.inf)
-                    same = all(value <= SAME for value in found.values())
-                    some.append({"id": case.id, "class": group, "difference": found, "same": same})
-                clouds += some
-                if not args.json:
-                    print(row(group, some), flush=True)
-    finally:
-        fitter.close()
+    with tempfile.TemporaryDirectory() as folder:
+        for group, cases in groups.items():
+            some = []
+            for case in cases:
+                try:
+                    found = compare(fitter, case, args, folder)
+                except FitFailed as error:
+                    print(f"{case.id} as it is: {error}", file=sys.stderr)
+                    found = dict.fromkeys(args.scales, math.inf)
+                same = all(value <= SAME for value in found.values())
+                some.append({"id": case.id, "class": group, "difference": found, "same": same})
+            clouds += some
+            if not args.json:
+                print(row(group, some), flush=True)
     if args.json:
         for cloud in clouds:
             found = cloud["difference"].items()

@@ -228,8 +228,8 @@ def main():
         print("interrupted before anything was timed", file=sys.stderr)
         return 130
     finally:
-        for fitter in fitters:
-            fitter.close()
+        for ems in fitters[1:]:
+            ems.close()
 
 
 if __name__ == "__main__":
