@@ -76,6 +76,9 @@ fn noisiest(s: &Parameters) -> f64 {
 /// No leash holds noise below this.
 const LEASHED: f64 = 0.01;
 
+/// Rounds from one look along the lines of sight to the next.
+const LOOKS: usize = 2;
+
 /// Buffers that are used again from one hypothesis to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace {
@@ -179,9 +182,11 @@ pub(super) fn refine(
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
     let (mut rounds, mut stopped) = (start.rounds, Stopped::Rounds);
-    for _ in 0..schedule.rounds {
+    for round in 0..schedule.rounds {
         rounds += 1;
-        work.look(&s, terms, schedule.rays);
+        if round % LOOKS == 0 {
+            work.look(&s, terms, schedule.rays);
+        }
         let mut normal = work.normal(s.family, &mixture, n);
         terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
         let before = normal.cost;
