@@ -3,6 +3,7 @@
 use super::Effort;
 use super::bias::without_bias;
 use super::centred::spread;
+use super::columns::Sample;
 use super::prepare::Normalised;
 use super::search::schedule;
 use super::smeared::smeared_cost;
@@ -51,11 +52,15 @@ pub(super) fn finish(
         }
         Sight::OneSide if cloud.effort == Effort::Quick => return best,
         Sight::OneSide => {
-            let along = pool[..1].iter().chain(near.take(SIGHTED - 1)).map(|h| {
-                let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
-                refine(h, &cloud.fine, terms, &last, work)
-            });
-            return cheapest(along.collect()).unwrap_or(pool[0]);
+            let mut along = |h: &Hypothesis, points: &Sample| {
+                let last =
+                    Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
+                refine(h, points, terms, &last, work)
+            };
+            let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));
+            let rivals = rivals.map(|h| along(h, &cloud.middle)).collect();
+            let best = cheapest(rivals).unwrap_or(pool[0]);
+            return along(&best, &cloud.fine);
         }
     };
     let mut rivals = vec![best];
