@@ -47,6 +47,6 @@ fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
     let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
     let due = PI * square * density;
     let found = Neighbours::among(on.into_iter());
-    let shares = probes.iter().map(|p| (found.within(p, square) as f64 / due).min(1.0));
+    let shares = probes.iter().map(|p| (found.count(p, square) as f64 / due).min(1.0));
     shares.sum::<f64>() / probes.len().max(1) as f64
 }

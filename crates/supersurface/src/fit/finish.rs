@@ -53,8 +53,7 @@ pub(super) fn finish(
         Sight::OneSide if cloud.effort == Effort::Quick => return best,
         Sight::OneSide => {
             let mut along = |h: &Hypothesis, points: &Sample| {
-                let last =
-                    Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
+                let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
                 refine(h, points, terms, &last, work)
             };
             let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));

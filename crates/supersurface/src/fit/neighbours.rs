@@ -1,15 +1,27 @@
-//! Which points are near a place: all are looked at, eight at a time, which for some thousand points is faster than any
-//! order among them.
+//! Which points are near a place: points sorted into the cells of a grid over their box.
+//!
+//! The cells are so large that an occupied one holds some points of a surface; rows of cells lie side by side in the
+//! list, so that a neighbourhood is a few stretches of it. What is found does not depend on the cells.
+
+use std::ops::Range;
 
 use crate::Vector;
-use crate::numeric::lanes::{Job, WIDTH, dispatch};
+
+/// Points of a surface in an occupied cell.
+const POINTS: f64 = 4.0;
+/// Most cells along an axis.
+const MOST: usize = 64;
 
 /// Points among which neighbours are sought.
 #[derive(Clone, Debug)]
 pub(super) struct Neighbours {
-    /// Coordinates, padded with infinity.
-    columns: [Vec<f64>; 3],
-    count: usize,
+    /// Points and their places in the cloud, cell after cell.
+    points: Vec<(Vector, u32)>,
+    /// First point of each cell, and the number of points at the end.
+    starts: Vec<u32>,
+    low: Vector,
+    cell: f64,
+    counts: [usize; 3],
     near: Vec<(f64, u32)>,
     /// Squared distance within which enough were found last.
     reach: f64,
@@ -17,99 +29,101 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     pub(super) fn among(points: impl Iterator<Item = Vector>) -> Self {
-        let mut columns = [(); 3].map(|()| Vec::new());
-        for p in points {
-            columns.iter_mut().zip(p.iter()).for_each(|(column, x)| column.push(*x));
+        let points: Vec<Vector> = points.collect();
+        let (mut low, mut high) = (Vector::repeat(f64::INFINITY), Vector::repeat(-f64::INFINITY));
+        for p in &points {
+            (low, high) = (low.inf(p), high.sup(p));
         }
-        let count = columns[0].len();
-        for column in &mut columns {
-            column.resize(count.next_multiple_of(WIDTH), f64::INFINITY);
+        let side = high - low;
+        let area = 2.0 * (side.x * side.y + side.y * side.z + side.z * side.x);
+        let cell = (area * POINTS / points.len() as f64).sqrt().max(side.max() / MOST as f64);
+        let cell = if cell > 0.0 { cell } else { f64::INFINITY };
+        let counts = [0, 1, 2].map(|k| (side[k] / cell) as usize + 1);
+        let mut out = Self {
+            points: vec![(Vector::zeros(), 0); points.len()],
+            starts: vec![0; counts.iter().product::<usize>() + 1],
+            low,
+            cell,
+            counts,
+            near: Vec::new(),
+            reach: cell * cell,
+        };
+        // counted, then laid down from the end of each cell to its beginning
+        for p in &points {
+            let cell = out.cell_of(p);
+            out.starts[cell] += 1;
         }
-        Self { columns, count, near: Vec::new(), reach: f64::INFINITY }
+        let mut sum = 0;
+        for start in &mut out.starts {
+            sum += *start;
+            *start = sum;
+        }
+        for (i, p) in points.iter().enumerate().rev() {
+            let cell = out.cell_of(p);
+            out.starts[cell] -= 1;
+            out.points[out.starts[cell] as usize] = (*p, i as u32);
+        }
+        out
+    }
+
+    fn cell_of(&self, p: &Vector) -> usize {
+        let [x, y, z] = [0, 1, 2].map(|k| self.along(k, p[k]));
+        (z * self.counts[1] + y) * self.counts[0] + x
+    }
+
+    /// The cell along an axis, the nearest one for places outside.
+    fn along(&self, k: usize, x: f64) -> usize {
+        (((x - self.low[k]) / self.cell) as usize).min(self.counts[k] - 1)
     }
 
     /// The nearest to a place, as (squared distance, index): `count` of them or all there are, the last of them the
     /// farthest, the others in no order.
     pub(super) fn nearest(&mut self, p: &Vector, count: usize) -> &[(f64, u32)] {
-        let count = count.min(self.count);
-        if count == 0 {
-            return &[];
-        }
-        loop {
-            let (columns, near, reach) = (&self.columns, &mut self.near, self.reach);
+        let count = count.min(self.points.len());
+        let mut near = std::mem::take(&mut self.near);
+        let last = loop {
             near.clear();
-            dispatch(Near { columns, p, reach, visit: |square, i| near.push((square, i)) });
-            if near.len() >= count || reach.is_infinite() {
-                break;
+            self.within(p, self.reach, |square, i| near.push((square, i)));
+            if near.len() >= count || self.reach.is_infinite() {
+                break count.min(near.len()).checked_sub(1);
             }
-            self.reach = if reach > 0.0 { 4.0 * reach } else { f64::INFINITY };
-        }
-        let last = count.min(self.near.len()) - 1;
+            self.reach = if self.reach > 0.0 { 4.0 * self.reach } else { f64::INFINITY };
+        };
+        self.near = near;
+        let Some(last) = last else { return &[] };
         self.near.select_nth_unstable_by(last, |a, b| a.0.total_cmp(&b.0));
         // about twice as many the next time
         self.reach = 2.0 * self.near[last].0;
         &self.near[..=last]
     }
 
-    /// How many lie within a squared distance of a place.
-    pub(super) fn within(&self, p: &Vector, reach: f64) -> usize {
-        let mut found = 0.0;
-        dispatch(Count { columns: &self.columns, p, reach, found: &mut found });
-        found as usize
-    }
-}
-
-/// Visits all points whose squared distance is less than `reach`.
-struct Near<'a, V> {
-    columns: &'a [Vec<f64>; 3],
-    p: &'a Vector,
-    reach: f64,
-    visit: V,
-}
-
-impl<V: FnMut(f64, u32)> Job for Near<'_, V> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
-        let [x, y, z] = self.columns;
-        let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
-        for (b, ((x, y), z)) in blocks.zip(z.as_chunks::<WIDTH>().0).enumerate() {
-            let squares: [f64; WIDTH] = std::array::from_fn(|i| {
-                let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
-                dx * dx + dy * dy + dz * dz
-            });
-            if squares.iter().fold(false, |any, s| any | (*s < self.reach)) {
-                for (i, square) in squares.iter().enumerate() {
-                    if *square < self.reach {
-                        (self.visit)(*square, (b * WIDTH + i) as u32);
+    /// Calls `visit(squared distance, index)` for all points that are nearer to a place than the root of `reach`.
+    pub(super) fn within(&self, p: &Vector, reach: f64, mut visit: impl FnMut(f64, u32)) {
+        if self.points.is_empty() {
+            return;
+        }
+        let radius = reach.sqrt();
+        let [x, y, z]: [Range<usize>; 3] =
+            [0, 1, 2].map(|k| self.along(k, p[k] - radius)..self.along(k, p[k] + radius) + 1);
+        for z in z {
+            for y in y.clone() {
+                let row = (z * self.counts[1] + y) * self.counts[0];
+                let [from, to] = [row + x.start, row + x.end].map(|c| self.starts[c] as usize);
+                for (q, i) in &self.points[from..to] {
+                    let square = (q - p).norm_squared();
+                    if square < reach {
+                        visit(square, *i);
                     }
                 }
             }
         }
     }
-}
 
-/// Counts them.
-struct Count<'a> {
-    columns: &'a [Vec<f64>; 3],
-    p: &'a Vector,
-    reach: f64,
-    found: &'a mut f64,
-}
-
-impl Job for Count<'_> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let [x, y, z] = self.columns;
-        let blocks = x.as_chunks::<WIDTH>().0.iter().zip(y.as_chunks::<WIDTH>().0);
-        let mut lanes = [0.0; WIDTH];
-        for ((x, y), z) in blocks.zip(z.as_chunks::<WIDTH>().0) {
-            for i in 0..WIDTH {
-                let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
-                let square = dx * dx + dy * dy + dz * dz;
-                lanes[i] += if square < self.reach { 1.0 } else { 0.0 };
-            }
-        }
-        *self.found = lanes.iter().sum();
+    /// How many are that near.
+    pub(super) fn count(&self, p: &Vector, reach: f64) -> usize {
+        let mut found = 0;
+        self.within(p, reach, |_, _| found += 1);
+        found
     }
 }
 
@@ -130,7 +144,7 @@ mod tests {
             let near = neighbours.nearest(p, 5);
             assert!(near.iter().any(|n| points[n.1 as usize] == *p));
             assert_eq!((near.len(), near[4].0), (5, squares[4]));
-            assert_eq!(neighbours.within(p, squares[9]), 9);
+            assert_eq!(neighbours.count(p, squares[9]), 9);
         }
         assert_eq!(neighbours.nearest(&points[0], 999).len(), 301);
         let mut same = Neighbours::among((0..9).map(|_| Vector::zeros()));

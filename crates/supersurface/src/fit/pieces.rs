@@ -5,8 +5,7 @@
 
 use super::neighbours::Neighbours;
 use super::start::quantile;
-use crate::cloud::VoxelGrid;
-use crate::{Point, Vector};
+use crate::Vector;
 
 /// Neighbours within the radius that make a point part of a surface.
 const NEIGHBOURS: usize = 5;
@@ -29,14 +28,11 @@ const CRUMB: f64 = 0.02;
 pub(super) fn pieces(points: &[Vector]) -> Pieces {
     let all = || (0..points.len()).collect();
     let whole = || Pieces { largest: all(), coherent: all() };
-    let radius = REACH * spacing(points);
+    let mut neighbours = Neighbours::among(points.iter().copied());
+    let radius = REACH * spacing(points, &mut neighbours);
     if !(radius > 0.0 && radius.is_finite()) {
         return whole();
     }
-    let places: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
-    let Some(grid) = VoxelGrid::new(&places, 0..places.len() as u32, radius) else {
-        return whole();
-    };
     let (mut piece, mut sizes) = (vec![usize::MAX; points.len()], Vec::new());
     let (mut open, mut found) = (Vec::new(), Vec::new());
     for i in 0..points.len() {
@@ -47,7 +43,7 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
         open.push(i);
         while let Some(at) = open.pop() {
             found.clear();
-            grid.within(&places[at], radius, |j, _| found.push(j as usize));
+            neighbours.within(&points[at], radius * radius, |_, j| found.push(j as usize));
             // the point itself is among them
             if found.len() <= NEIGHBOURS {
                 continue;
@@ -75,8 +71,7 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
 }
 
 /// Median distance of the sixth neighbour.
-fn spacing(points: &[Vector]) -> f64 {
-    let mut neighbours = Neighbours::among(points.iter().copied());
+fn spacing(points: &[Vector], neighbours: &mut Neighbours) -> f64 {
     let stride = points.len().div_ceil(MEASURED).max(1);
     // the point itself is the first
     let mut sixth = |p| neighbours.nearest(p, NEIGHBOURS + 2).last().map_or(0.0, |n| n.0.sqrt());
