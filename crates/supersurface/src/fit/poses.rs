@@ -115,8 +115,9 @@ impl<'a> Settling<'a> {
     fn beside(&self) -> Normal {
         let mut normal = Normal::zero();
         let points = self.views.sample.len();
-        let beside = Beside { points, scale: self.mixture.scale, rays: 0, intrusions: &[] };
-        self.views.terms.add(&self.body, &beside, &mut normal);
+        let beside =
+            Beside { points, scale: self.mixture.scale, rays: 0, intrusions: &Sample::default() };
+        self.views.terms.add(&self.body, &beside, &mut Evaluation::default(), &mut normal);
         normal
     }
 

@@ -86,7 +86,9 @@ pub(super) struct Workspace {
     trial: Evaluation,
     weights: Vec<f64>,
     weighted: Vec<f64>,
-    intrusions: Vec<Vector>,
+    intruders: Vec<Vector>,
+    intrusions: Sample,
+    intruding: Evaluation,
     search: Rays,
     sights: Sights,
 }
@@ -100,14 +102,24 @@ impl Workspace {
         normal
     }
 
-    fn beside(&self, points: usize, mixture: &Mixture, schedule: &Schedule) -> Beside<'_> {
-        Beside { points, scale: mixture.scale, rays: schedule.rays, intrusions: &self.intrusions }
+    /// Adds what is known beside the points.
+    fn add(
+        &mut self,
+        terms: &Terms,
+        s: &Parameters,
+        [points, rays]: [usize; 2],
+        scale: f64,
+        to: &mut Normal,
+    ) {
+        let beside = Beside { points, scale, rays, intrusions: &self.intrusions };
+        terms.add(s, &beside, &mut self.intruding, to);
     }
 
     /// Looks for the lines of sight that a body intrudes on. Only a toroid can hide its own far wall.
     fn look(&mut self, s: &Parameters, terms: &Terms, rays: usize) {
         let own = s.family.is_ring();
-        terms.intrusions(s, rays, own, &mut self.search, &mut self.intrusions);
+        terms.intrusions(s, rays, own, &mut self.search, &mut self.intruders);
+        self.intrusions.set(self.intruders.iter().copied());
     }
 
     /// Evaluates the points for a body that is tried.
@@ -177,6 +189,7 @@ pub(super) fn refine(
     let mut damping = 1e-3;
     let mut failures = 0;
     let n = points.len();
+    let counts = [n, schedule.rays];
     work.evaluate(&s, points, schedule);
     work.accept();
     mixture.density = terms.outlier_density(&s);
@@ -188,7 +201,7 @@ pub(super) fn refine(
             work.look(&s, terms, schedule.rays);
         }
         let mut normal = work.normal(s.family, &mixture, n);
-        terms.add(&s, &work.beside(n, &mixture, schedule), &mut normal);
+        work.add(terms, &s, counts, mixture.scale, &mut normal);
         let before = normal.cost;
         let mut gain = None;
         for _ in 0..4 {
@@ -199,7 +212,7 @@ pub(super) fn refine(
             let next = s.stepped(&step);
             work.evaluate(&next, points, schedule);
             let mut after = Normal::zero();
-            terms.add(&next, &work.beside(n, &mixture, schedule), &mut after);
+            work.add(terms, &next, counts, mixture.scale, &mut after);
             let after = after.cost + mixture.cost(&work.trial.distances, n);
             if after < before {
                 (s, gain) = (next, Some(before - after));
@@ -228,7 +241,7 @@ pub(super) fn refine(
     mixture.update(&work.now.distances, n, [NOISE_FLOOR, noisiest(&s)], 6);
     work.look(&s, terms, schedule.rays);
     let mut extra = Normal::zero();
-    terms.add(&s, &work.beside(n, &mixture, schedule), &mut extra);
+    work.add(terms, &s, counts, mixture.scale, &mut extra);
     let cost = mixture.cost(&work.now.distances, n)
         + extra.cost
         + terms.spread_cost(&s, n)

@@ -279,7 +279,8 @@ fn ringed(start: &Parameters, axes: [f64; 3], points: &[Vector], share: f64) -> 
         .iter()
         .map(|p| {
             let q = start.rotation.inverse_transform_vector(&(p - start.position));
-            (q.x / axes[0]).hypot(q.y / axes[1])
+            let (x, y) = (q.x / axes[0], q.y / axes[1]);
+            (x * x + y * y).sqrt()
         })
         .collect();
     let hole = (share * quantile(&mut radii, 2.0 * TAIL)).clamp(0.1, 0.8);

@@ -76,7 +76,8 @@ impl Normal {
     #[inline]
     pub(super) fn add(&mut self, residual: f64, weight: f64, row: &Row) {
         self.cost += 0.5 * weight * residual * residual;
-        for i in 0..COUNT {
+        // most terms speak of few parameters
+        for i in (0..COUNT).filter(|i| row[*i] != 0.0) {
             let wi = weight * row[i];
             self.gradient[i] += wi * residual;
             for (entry, value) in self.matrix[i].iter_mut().zip(&row[..=i]) {
@@ -109,7 +110,7 @@ pub(super) struct Beside<'a> {
     /// Number of lines of sight that were looked at.
     pub(super) rays: usize,
     /// Where they lie deepest in the body, held while the body takes a step.
-    pub(super) intrusions: &'a [Vector],
+    pub(super) intrusions: &'a Sample,
 }
 
 /// Weight of the reach against the points: a body twice the reach costs each point half a nat.
@@ -162,10 +163,16 @@ impl Terms {
         hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i])).sum()
     }
 
-    /// Adds all terms.
-    pub(super) fn add(&self, s: &Parameters, beside: &Beside<'_>, to: &mut Normal) {
+    /// Adds all terms; `intruding` is a buffer.
+    pub(super) fn add(
+        &self,
+        s: &Parameters,
+        beside: &Beside<'_>,
+        intruding: &mut Evaluation,
+        to: &mut Normal,
+    ) {
         self.add_support(s, beside.points, beside.scale, to);
-        add_intrusions(s, beside, to);
+        add_intrusions(s, beside, intruding, to);
         self.add_reach(s, beside.points, to);
         match self.sight {
             Sight::OneSide => add_size(s, SIZE_WEIGHT, to),
@@ -260,15 +267,14 @@ fn some(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
 }
 
 /// Adds the depths of the intrusions; `rays` is how many lines of sight were looked at.
-fn add_intrusions(s: &Parameters, at: &Beside<'_>, to: &mut Normal) {
+fn add_intrusions(s: &Parameters, at: &Beside<'_>, there: &mut Evaluation, to: &mut Normal) {
     let sigma = at.scale.max(0.02);
     // an eighth of the points' say, however many rays there are
     let weight = 0.12 * at.points as f64 / at.rays.max(1) as f64 / (sigma * sigma);
-    if at.intrusions.is_empty() {
+    if at.intrusions.len() == 0 {
         return;
     }
-    let mut there = Evaluation::default();
-    there.fill(s, &Sample::new(at.intrusions.iter().copied()));
+    there.fill(s, at.intrusions);
     for i in 0..at.intrusions.len() {
         let d = there.distances[i];
         if d < 0.0 {
