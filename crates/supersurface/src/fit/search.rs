@@ -21,6 +21,8 @@ const COARSE_RAYS: usize = 16;
 /// How many starts of a single view are ranked, and how many of all are refined.
 const SHORTLIST: usize = 8;
 const KEPT: usize = 4;
+/// More starts than this are sorted out by a sketch.
+const SKETCHED: usize = 16;
 /// Starts that are kept though half of them are fewer.
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
@@ -90,6 +92,7 @@ fn search(
     let rounds: &[(&Sample, usize, usize)] = match (terms.sight, sketch) {
         (Sight::OneSide, true) => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
         (Sight::OneSide, false) => &[(&cloud.coarse, 10, KEPT)],
+        _ if starts.len() > SKETCHED => &[(&cloud.sketch, 4, SKETCHED), (&cloud.coarse, 8, KEPT)],
         // a start that is far behind after a few rounds does not catch up
         _ => &[(&cloud.coarse, 4, half), (&cloud.coarse, 6, KEPT)],
     };
