@@ -153,7 +153,7 @@ class Supersurface:
             last = done.stderr.strip().splitlines()[-1:] or [f"exit status {done.returncode}"]
             raise FitFailed(last[0])
         try:
-            answers = [json.loads(line) for line in done.stdout.splitlines()]
+            answers = list(json_values(done.stdout))
         except ValueError as error:
             raise FitFailed(f"no report: {error}") from None
         if len(answers) != count:
@@ -166,6 +166,15 @@ class Supersurface:
             if not finite(answer):
                 raise FitFailed("the fit is not finite")
         return answers
+
+
+def json_values(text):
+    """The JSON values that follow each other in a text, each on one line or on several."""
+    decoder, text = json.JSONDecoder(), text.strip()
+    while text:
+        value, end = decoder.raw_decode(text)
+        yield value
+        text = text[end:].lstrip()
 
 
 def finite(value):
