@@ -1,20 +1,58 @@
-//! Points about their mean, in units of their root mean square distance from it: what every fit works on, so that
-//! neither place nor unit matters. Points that determine no surface are told apart here.
+//! Points about their mean, along their principal axes and in units of their root mean square distance from it: what
+//! every fit works on, so that neither place nor turn nor unit matters. Points that determine no surface are told apart
+//! here.
 
-use nalgebra::SymmetricEigen;
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion};
 
 use super::FitError;
 use super::patches::scatter;
+use super::start::axes_of;
 use crate::{Point, Vector};
 
-/// A cloud with zero mean and unit root mean square.
+/// Where normalised coordinates lie in the frame of a cloud: `x = centre + scale axes q`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement {
+    /// The mean, in the cloud's frame and metres.
+    pub(super) centre: Vector,
+    /// The principal axes.
+    pub(super) axes: Rotation3<f64>,
+    /// The root mean square, in metres.
+    pub(super) scale: f64,
+}
+
+impl Placement {
+    /// Normalised coordinates themselves.
+    pub(super) fn identity() -> Self {
+        Self { centre: Vector::zeros(), axes: Rotation3::identity(), scale: 1.0 }
+    }
+
+    /// A point of the cloud's frame in normalised coordinates.
+    pub(super) fn inward(&self, p: &Point) -> Vector {
+        self.turned_inward(&((p.coords - self.centre) / self.scale))
+    }
+
+    /// A direction of the cloud's frame in normalised coordinates.
+    pub(super) fn turned_inward(&self, direction: &Vector) -> Vector {
+        self.axes.inverse_transform_vector(direction)
+    }
+
+    /// A point of normalised coordinates in the cloud's frame.
+    pub(super) fn outward(&self, q: &Vector) -> Point {
+        Point::from(self.centre + self.axes * q * self.scale)
+    }
+
+    /// The pose in the cloud's frame of something with a place and a turn in normalised coordinates.
+    pub(super) fn pose(&self, position: &Vector, rotation: &Rotation3<f64>) -> Isometry3<f64> {
+        let turn = UnitQuaternion::from_rotation_matrix(&(self.axes * rotation));
+        Isometry3::from_parts(self.outward(position).coords.into(), turn)
+    }
+}
+
+/// A cloud with zero mean and unit root mean square, along its principal axes.
 #[derive(Clone, Debug)]
 pub(super) struct Centred {
     pub(super) points: Vec<Vector>,
-    /// The mean, in the cloud's frame and metres.
-    pub(super) centre: Vector,
-    /// The root mean square, in metres.
-    pub(super) scale: f64,
+    pub(super) placement: Placement,
 }
 
 impl Centred {
@@ -38,19 +76,28 @@ impl Centred {
         if !scale.is_normal() || !is_finite(&centre) {
             return Err(FitError::OnePoint { points: found });
         }
-        let points: Vec<Vector> = points.iter().map(|p| (p - centre) / scale).collect();
-        let mut values = SymmetricEigen::new(scatter(points.iter())).eigenvalues;
-        values.as_mut_slice().sort_by(f64::total_cmp);
+        let mut points: Vec<Vector> = points.iter().map(|p| (p - centre) / scale).collect();
+        let (axes, values) = principal_axes(&points);
         if values[1] < 1e-10 * values[2] {
             return Err(FitError::Line { points: found });
         }
-        Ok(Self { points, centre, scale })
+        points.iter_mut().for_each(|p| *p = axes.inverse_transform_vector(p));
+        Ok(Self { points, placement: Placement { centre, axes, scale } })
     }
+}
 
-    /// A point of the cloud's frame in these units.
-    pub(super) fn inward(&self, p: &Point) -> Vector {
-        (p.coords - self.centre) / self.scale
-    }
+/// The principal axes of points, the thinnest first, and the mean squares along them. The axes point to where the farther
+/// points are, so that they turn with the cloud.
+fn principal_axes(points: &[Vector]) -> (Rotation3<f64>, [f64; 3]) {
+    let axes = axes_of(&scatter(points.iter()));
+    let mean = |k: usize, power: i32| {
+        let powers = points.iter().map(|p| p.dot(&axes.column(k)).powi(power));
+        powers.sum::<f64>() / points.len() as f64
+    };
+    let towards = |k: usize| axes.column(k) * 1f64.copysign(mean(k, 3));
+    let (x, y) = (towards(0), towards(1));
+    let turned = Matrix3::from_columns(&[x, y, x.cross(&y)]);
+    (Rotation3::from_matrix_unchecked(turned), [0, 1, 2].map(|k| mean(k, 2)))
 }
 
 /// The finite points.

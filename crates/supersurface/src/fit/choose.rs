@@ -1,7 +1,7 @@
 //! Which family: by the likelihood of the points and by whether the hole is really seen.
 
 use super::Effort;
-use super::centred::spread;
+use super::centred::{Placement, spread};
 use super::columns::{Evaluation, Sample, distances};
 use super::coverage::shows_a_part;
 use super::finish::{BLURRED, COMPARING};
@@ -161,7 +161,7 @@ fn is_there(cloud: &Normalised, h: &Hypothesis) -> bool {
     const PROBES: usize = 800;
     const LOOKED_AT: usize = 200;
     let s = &h.parameters;
-    if s.surface(&Vector::zeros(), 1.0).is_err() {
+    if s.surface(&Placement::identity()).is_err() {
         return false;
     }
     let mut probes = Vec::with_capacity(PROBES);

@@ -209,6 +209,7 @@ impl<const PARTS: u8, const WHAT: u8> Job for Fill<'_, PARTS, WHAT> {
 pub(super) mod tests {
     use super::*;
     use crate::Point;
+    use crate::fit::centred::Placement;
     use crate::fit::pull_back::unbend;
     use crate::numeric::random::Stream;
     use crate::shape::Implicit;
@@ -245,7 +246,7 @@ pub(super) mod tests {
         let mut seen = 0;
         for case in 0..600 {
             let s = some_body(Family::ALL[case % 6], &mut random);
-            let Ok(surface) = s.surface(&Vector::zeros(), 1.0) else { continue };
+            let Ok(surface) = s.surface(&Placement::identity()) else { continue };
             let points = (0..21).map(|_| Vector::from_fn(|_, _| random.between(-1.5, 1.5)));
             let sample = Sample::new(points);
             let mut all = Evaluation::default();

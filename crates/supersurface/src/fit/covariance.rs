@@ -109,13 +109,14 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let prior = DMatrix::identity(n, n) * PRIOR;
     let inverse = (information + &prior).try_inverse()?;
     let scattered = &inverse * (scatter + prior) * inverse.transpose();
-    let mut matrix = 0.5 * (&scattered + scattered.transpose());
-    let units: Vec<f64> = index.iter().map(|k| unit(*k, h, cloud.scale)).collect();
-    for j in 0..n {
-        for k in 0..n {
-            matrix[(j, k)] *= units[j] * units[k];
-        }
+    let units: Vec<f64> = index.iter().map(|k| unit(*k, h, cloud.placement.scale)).collect();
+    let mut outward = DMatrix::from_diagonal(&DVector::from_vec(units));
+    if let Some(place) = index.iter().position(|k| *k == POSITION) {
+        let turned = cloud.placement.axes.matrix() * cloud.placement.scale;
+        outward.view_mut((place, place), (3, 3)).copy_from(&turned);
     }
+    let matrix = &outward * scattered * outward.transpose();
+    let matrix = 0.5 * (&matrix + matrix.transpose());
     let names = index.iter().map(|k| NAMES[*k]).collect();
     matrix.iter().all(|v| v.is_finite()).then_some(Covariance { names, matrix })
 }

@@ -21,10 +21,9 @@ pub(super) fn judge(
     margin: f64,
     moves: Vec<Isometry3<f64>>,
 ) -> Result<Fit, FitError> {
-    let s = &h.parameters;
-    let inward = |p: &Point| (p.coords - cloud.centre) / cloud.scale;
+    let (s, placement) = (&h.parameters, &cloud.placement);
     let all = || views.iter().flat_map(|view| view.points.iter().map(move |p| (view, p)));
-    let counted = all().filter(|(view, p)| view.counts(p)).map(|(_, p)| inward(p));
+    let counted = all().filter(|(view, p)| view.counts(p)).map(|(_, p)| placement.inward(p));
     let mut distances = distances(s, counted);
     let mut next = distances.iter();
     let mut judge = |(view, p): (&View<'_>, &Point)| {
@@ -40,9 +39,9 @@ pub(super) fn judge(
     }
     Ok(Fit {
         family: s.family,
-        surface: s.surface(&cloud.centre, cloud.scale)?,
-        noise: h.mixture.scale * cloud.scale,
-        residual: quantile(&mut distances, 0.5) * cloud.scale,
+        surface: s.surface(placement)?,
+        noise: h.mixture.scale * placement.scale,
+        residual: quantile(&mut distances, 0.5) * placement.scale,
         inliers,
         probabilities,
         margin,

@@ -88,22 +88,22 @@ pub struct Mirror {
 /// ```
 pub fn mirrored(view: &View<'_>) -> Option<Mirror> {
     let cloud = Centred::new(&view.counted(), LEAST_POINTS).ok()?;
-    let viewpoint = cloud.inward(&view.viewpoint?);
+    let placement = cloud.placement;
+    let viewpoint = placement.inward(&view.viewpoint?);
     let seen = Seen::of(cloud.points, viewpoint)?;
-    let upright = view.support.map(|plane| plane.normal().into_inner());
+    let upright = view.support.map(|plane| placement.turned_inward(&plane.normal()));
     let image = |plane: &Guess| seen.image(plane, &seen.some);
     let guesses = normals(&seen, upright).filter_map(|normal| seen.nearest(normal));
     // a plane at a slant shows less that was hidden
     let cost = |g: &Guess| image(g).depth / -g.normal.dot(&viewpoint);
     let best = guesses.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-    let outward = |p: &Vector| Point::from(cloud.centre + p * cloud.scale);
     let image = seen.image(&best, &seen.all);
     Some(Mirror {
         plane: Plane::through(
-            &outward(&(best.normal * best.offset)),
-            Direction::new_normalize(best.normal),
+            &placement.outward(&(best.normal * best.offset)),
+            Direction::new_normalize(placement.axes * best.normal),
         ),
-        points: image.hidden.iter().map(outward).collect(),
+        points: image.hidden.iter().map(|p| placement.outward(p)).collect(),
         score: 1.0 - image.contradicting,
     })
 }
@@ -111,7 +111,7 @@ pub fn mirrored(view: &View<'_>) -> Option<Mirror> {
 /// The frames of the seen points with their mirror image, in the units of a view made ready.
 pub(super) fn completed_frames(view: &View<'_>, cloud: &Normalised) -> Vec<Frame> {
     let Some(mirror) = mirrored(view).filter(|m| !m.points.is_empty()) else { return Vec::new() };
-    let guessed = mirror.points.iter().map(|p| (p.coords - cloud.centre) / cloud.scale);
+    let guessed = mirror.points.iter().map(|p| cloud.placement.inward(p));
     let points: Vec<Vector> = cloud.points.iter().copied().chain(guessed).collect();
     whole_frames(&spread(&points, FRAMED))
 }

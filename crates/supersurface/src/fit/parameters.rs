@@ -1,7 +1,8 @@
 //! The numbers that are estimated, in the coordinates in which the solver moves them.
 
-use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion};
+use nalgebra::Rotation3;
 
+use super::centred::Placement;
 use crate::Vector;
 use crate::shape::{InvalidShape, Posed, Superellipsoid, Supertoroid};
 use crate::surface::Surface;
@@ -268,12 +269,9 @@ impl Parameters {
         }
     }
 
-    /// The posed surface, in the coordinates of these parameters times `scale` plus `centre`.
-    pub(super) fn surface(
-        &self,
-        centre: &Vector,
-        scale: f64,
-    ) -> Result<Posed<Surface>, InvalidShape> {
+    /// The posed surface where these coordinates are placed.
+    pub(super) fn surface(&self, placement: &Placement) -> Result<Posed<Surface>, InvalidShape> {
+        let scale = placement.scale;
         let axes = self.log_axes.map(|a| a.exp() * scale);
         let core = || Superellipsoid::new(axes, self.exponents);
         let [bx, by] = self.bend;
@@ -294,10 +292,7 @@ impl Parameters {
             let back = -self.twist * std::f64::consts::PI;
             rotation *= Rotation3::new(Vector::z() * back);
         }
-        let pose = Isometry3::from_parts(
-            Translation3::from(self.position * scale + centre),
-            UnitQuaternion::from_rotation_matrix(&rotation),
-        );
+        let pose = placement.pose(&self.position, &rotation);
         Posed::new(surface, pose)
     }
 }

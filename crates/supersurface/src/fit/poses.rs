@@ -89,7 +89,7 @@ impl<'a> Moved<'a> {
 fn precisions(cloud: &Normalised, k: usize, errors: &[PoseError]) -> [f64; 2] {
     let error = errors.get(k).copied().unwrap_or_default();
     let distance = cloud.terms.eyes.get(k).map_or(1.0, |eye| eye.place.norm());
-    let shift = (error.shift / cloud.scale).hypot(error.turn * distance);
+    let shift = (error.shift / cloud.placement.scale).hypot(error.turn * distance);
     [shift, error.turn].map(|deviation| 1.0 / deviation.max(1e-6).powi(2))
 }
 
@@ -224,20 +224,22 @@ pub(super) fn moves(
         [*merged].into_iter().chain(views.iter().filter_map(alone)).collect();
     let settled = starts.iter().map(|start| settle(cloud, errors, start, still.clone()));
     let best = settled.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(still, |(_, moves)| moves);
-    let (scale, centre) = (cloud.scale, Translation3::from(cloud.centre));
+    let home = cloud.placement.pose(&Vector::zeros(), &Rotation3::identity());
     let outward = |m: Isometry3<f64>| {
-        let about = Isometry3::from_parts((m.translation.vector * scale).into(), m.rotation);
-        centre * about * centre.inverse()
+        let shift = m.translation.vector * cloud.placement.scale;
+        home * Isometry3::from_parts(shift.into(), m.rotation) * home.inverse()
     };
     best.into_iter().map(outward).collect()
 }
 
 /// A body that was found in the coordinates of `from` in those of `to`.
 fn carried(h: &Hypothesis, from: &Normalised, to: &Normalised) -> Hypothesis {
+    let (from, to) = (&from.placement, &to.placement);
     let ratio = from.scale / to.scale;
     let parameters = Parameters {
         log_axes: h.parameters.log_axes.map(|a| a + ratio.ln()),
-        position: (h.parameters.position * from.scale + (from.centre - to.centre)) / to.scale,
+        position: to.inward(&from.outward(&h.parameters.position)),
+        rotation: to.axes.inverse() * from.axes * h.parameters.rotation,
         bend: h.parameters.bend.map(|k| k / ratio),
         ..h.parameters
     };
@@ -257,7 +259,7 @@ fn settle(
     let count = cloud.fine.len();
     // what the poses are off looks like noise at first
     let largest = |of: fn(&PoseError) -> f64| errors.iter().map(of).fold(0.0, f64::max);
-    let off = largest(|e| e.shift) / cloud.scale + largest(|e| e.turn);
+    let off = largest(|e| e.shift) / cloud.placement.scale + largest(|e| e.turn);
     let mut annealed = off.clamp(NOISE_FLOOR, 0.1);
     let mut damping = 1e-3;
     for _ in 0..ROUNDS {

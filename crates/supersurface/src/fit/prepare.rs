@@ -1,6 +1,6 @@
 //! A view made ready: centred, thinned, with all that is known beside the points and frames to begin in.
 
-use super::centred::{Centred, spread_over};
+use super::centred::{Centred, Placement, spread_over};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
@@ -26,10 +26,9 @@ const HOVERING: f64 = 0.8;
 /// The support is known no better than this share of the cloud's size.
 const SUPPORT_TOLERANCE: f64 = 0.01;
 
-/// What was seen, with zero mean and unit root mean square.
+/// What was seen, with zero mean and unit root mean square, along its principal axes.
 pub(super) struct Normalised {
-    pub(super) centre: Vector,
-    pub(super) scale: f64,
+    pub(super) placement: Placement,
     pub(super) sketch: Sample,
     pub(super) coarse: Sample,
     pub(super) middle: Sample,
@@ -52,8 +51,8 @@ impl Normalised {
             seen_by.resize(points.len(), k);
         }
         let cloud = Centred::new(&points, LEAST_POINTS)?;
-        let (centre, scale, total) = (cloud.centre, cloud.scale, points.len());
-        let inward = |p: &Point| cloud.inward(p);
+        let (placement, total) = (cloud.placement, points.len());
+        let inward = |p: &Point| placement.inward(p);
         let all = Seen { points: &cloud.points, by: &seen_by };
         let (points, seen_by) = all.chosen(spread_over(total, FINE[effort as usize]));
         let fine = Seen { points: &points, by: &seen_by };
@@ -65,8 +64,8 @@ impl Normalised {
             views.iter().map(place).collect::<Option<_>>().unwrap_or_default();
         let support =
             views.iter().find_map(|view| Some((view, view.support?))).map(|(view, plane)| {
-                let normal = plane.normal().into_inner();
-                let offset = (normal.dot(&centre) + plane.offset()) / scale;
+                let normal = placement.turned_inward(&plane.normal());
+                let offset = plane.height(&Point::from(placement.centre)) / placement.scale;
                 let mut heights: Vec<f64> = points.iter().map(|p| normal.dot(p) + offset).collect();
                 // a piece that hovers higher than it is large is not the top of something that stands there
                 let standing =
@@ -106,8 +105,7 @@ impl Normalised {
         let reach = 0.55 * seen.max().max(tallest);
         let terms = Terms { support, eyes, sight, reach };
         Ok(Self {
-            centre,
-            scale,
+            placement,
             sketch: all.sample(&places, SKETCH),
             coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
             middle: all.sample(&places, MIDDLE[effort as usize]),

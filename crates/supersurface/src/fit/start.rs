@@ -125,7 +125,7 @@ fn push(out: &mut Vec<Frame>, axes: Matrix3<f64>, points: Vec<Vector>, terms: &T
 }
 
 /// Eigenvectors in rising order of the eigenvalues, right-handed.
-fn axes_of(m: &Matrix3<f64>) -> Matrix3<f64> {
+pub(super) fn axes_of(m: &Matrix3<f64>) -> Matrix3<f64> {
     let eigen = SymmetricEigen::new(*m);
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));

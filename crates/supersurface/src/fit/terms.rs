@@ -1,6 +1,7 @@
 //! What is known beside the points: the support from which the body rises, the space that rays prove
 //! empty, and a weak preference for bodies that are not needles.
 
+use super::centred::Placement;
 use super::columns::{Evaluation, Sample, distances};
 use super::noise::Mixture;
 use super::parameters::{COUNT, EXPONENT, POSITION, Parameters, RING, ROTATION, Row};
@@ -324,7 +325,7 @@ fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
 /// The same for a deformed body: its surface is parallel to the plane at the lowest point, so that it rises as the
 /// first-order distance of that point does.
 fn extreme_of_deformed(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
-    let body = s.surface(&Vector::zeros(), 1.0).ok()?;
+    let body = s.surface(&Placement::identity()).ok()?;
     let lowest = body.support_point(&-normal).coords;
     let mut there = Evaluation::default();
     there.fill(s, &Sample::new(std::iter::once(lowest)));

@@ -17,7 +17,7 @@ use crate::fit::start::quantile;
 use crate::fit::{Family, FitError, FitOptions, Stopped, View, fit};
 use crate::shape::Posed;
 use crate::surface::Surface;
-use crate::{Point, Pose, Vector};
+use crate::{Point, Vector};
 
 /// Points that sort out many starts, that rank them, and that refine the best of them.
 const SKETCH: usize = 90;
@@ -272,7 +272,7 @@ impl Cloud {
 
     /// True when the numbers make a shape: a bend may fold, a hyperquadric may be empty.
     fn is_shape<M: Member>(&self, h: &Hypothesis<M>) -> bool {
-        h.body.member.shape(&h.body.numbers, self.centred.scale).is_ok()
+        h.body.member.shape(&h.body.numbers, self.centred.placement.scale).is_ok()
     }
 
     /// Leaves out what is no shape, unless nothing is one: then the error says why.
@@ -299,15 +299,12 @@ impl Cloud {
             return Err(FitError::NoAgreement { share });
         }
         let body = &h.body;
-        let shape = body.member.shape(&body.numbers, self.centred.scale)?;
-        let pose = Pose::from_parts(
-            (body.position * self.centred.scale + self.centred.centre).into(),
-            nalgebra::UnitQuaternion::from_rotation_matrix(&body.rotation),
-        );
+        let shape = body.member.shape(&body.numbers, self.centred.placement.scale)?;
+        let pose = self.centred.placement.pose(&body.position, &body.rotation);
         Ok(GenericFit {
             surface: Posed::new(shape, pose)?,
-            noise: h.mixture.scale * self.centred.scale,
-            residual: quantile(&mut distances, 0.5) * self.centred.scale,
+            noise: h.mixture.scale * self.centred.placement.scale,
+            residual: quantile(&mut distances, 0.5) * self.centred.placement.scale,
             inliers,
             iterations: h.iterations,
             stopped: h.stopped,
