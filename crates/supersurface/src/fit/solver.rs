@@ -60,6 +60,8 @@ impl Schedule {
     }
 }
 
+/// A step that gains less than this many nats is none: so little may be rounding.
+const LEAST_GAIN: f64 = 1e-9;
 /// How the lowest scale comes down from round to round.
 pub(super) const DECAY: f64 = 0.7;
 /// Scale below which noise is never estimated, in normalised lengths.
@@ -214,7 +216,7 @@ pub(super) fn refine(
             let mut after = Normal::zero();
             work.add(terms, &next, counts, mixture.scale, &mut after);
             let after = after.cost + mixture.cost(&work.trial.distances, n);
-            if after < before {
+            if after < before - LEAST_GAIN {
                 (s, gain) = (next, Some(before - after));
                 work.accept();
                 damping = (damping * 0.25).max(1e-7);
