@@ -55,8 +55,8 @@ pub(super) struct Terms {
     pub(super) eyes: Vec<Eye>,
     /// How much of the surface the points can show.
     pub(super) sight: Sight,
-    /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much: a
-    /// side that no point shows is no reason to be larger than all that is seen.
+    /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much, nor twice of it
+    /// where less than all is seen: a side that no point shows is no reason to be larger than all that is seen.
     pub(super) reach: f64,
 }
 
@@ -116,6 +116,10 @@ pub(super) struct Beside<'a> {
 
 /// Weight of the reach against the points: a body twice the reach costs each point half a nat.
 const REACH_WEIGHT: f64 = 2.0;
+
+/// Multiple of the reach that stands in its place where not all is seen and no ray is known: more than half of a body may
+/// be missing there.
+const PART_REACH: f64 = 2.0;
 
 /// Outlier density a unit of normalised length where only one side is seen: along a ray it is a constant.
 const RAY_DENSITY: f64 = 0.25;
@@ -183,13 +187,15 @@ impl Terms {
         add_aspect(s, to);
     }
 
-    /// `½ w ln²(h_i / reach)` for every half extent above the reach.
+    /// `½ w ln²(h_i / r)` for every half extent above `r`, the reach or a multiple of it.
     fn add_reach(&self, s: &Parameters, points: usize, to: &mut Normal) {
-        if self.sight != Sight::OneSide {
-            return;
-        }
+        let most = match self.sight {
+            Sight::OneSide => self.reach,
+            Sight::Partly => PART_REACH * self.reach,
+            Sight::AllAround { .. } => return,
+        };
         for (i, half) in s.half_extents().iter().enumerate() {
-            let excess = (half / self.reach).ln();
+            let excess = (half / most).ln();
             if excess > 0.0 {
                 let mut row = [0.0; COUNT];
                 row[i] = 1.0;
