@@ -17,6 +17,9 @@ const RAYS: usize = 48;
 const ROUNDS: usize = 15;
 /// The last rounds gain less than this many nats, so that the way there does not matter.
 const END: f64 = 1e-6;
+/// Rounds of the others that are compared, and the nats below which a gain ends them.
+const ROUGHLY: usize = 6;
+const ROUGH: f64 = 0.5;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.018;
 pub(super) const BLURRED: f64 = 0.02;
@@ -62,25 +65,31 @@ pub(super) fn finish(
             return along(&best, &cloud.fine);
         }
     };
-    let mut rivals = vec![best];
-    rivals.extend(near.take(COMPARED - 1));
-    let last = Schedule { tolerance: END, ..schedule(5, RAYS, 0.0) };
-    rivals[0] = refine(&best, &cloud.fine, terms, &last, work);
-    let best = rivals[0];
+    let exactly = |h: &Hypothesis, work: &mut Workspace| {
+        let last = Schedule { tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
+        refine(h, &cloud.fine, terms, &last, work)
+    };
+    let best = exactly(&best, work);
     let noise = best.mixture.scale;
     if noise < BIASED {
         return best;
     }
-    rivals.truncate(if noise < BLURRED { 1 } else { COMPARED });
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
-    let corrected = rivals.iter().enumerate().map(|(i, h)| {
-        let rough = Schedule { tolerance: 0.5, ..schedule(6, RAYS, h.mixture.scale) };
-        let fitted = if i == 0 { *h } else { refine(h, &cloud.fine, terms, &rough, work) };
-        let unbiased = without_bias(&fitted, &cloud.fine);
-        let cost = smeared_cost(&unbiased.parameters, &fitted.mixture, &some, noise, volume);
+    let corrected = |h: &Hypothesis| {
+        let unbiased = without_bias(h, &cloud.fine);
+        let cost = smeared_cost(&unbiased.parameters, &h.mixture, &some, noise, volume);
         Hypothesis { cost, ..unbiased }
+    };
+    let unbiased = corrected(&best);
+    let roughly = near.take(if noise < BLURRED { 0 } else { COMPARED - 1 }).map(|h| {
+        let rough = Schedule { tolerance: ROUGH, ..schedule(ROUGHLY, RAYS, h.mixture.scale) };
+        let fitted = refine(h, &cloud.fine, terms, &rough, work);
+        (fitted, corrected(&fitted).cost)
     });
-    cheapest(corrected.collect()).unwrap_or(best)
+    match roughly.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((fitted, cost)) if cost < unbiased.cost => corrected(&exactly(&fitted, work)),
+        _ => unbiased,
+    }
 }
 
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {
