@@ -26,7 +26,7 @@ const PRIOR: f64 = 1.0;
 
 /// Shares of the pull that count as doubt: of all that is beside the points, and of the bias.
 const DOUBT: f64 = 1.0;
-const DOUBT_OF_BIAS: f64 = 0.4;
+const DOUBT_OF_BIAS: f64 = 0.55;
 
 /// The parameters of a fit, in order, and their covariance.
 #[derive(Clone, Debug, PartialEq)]
