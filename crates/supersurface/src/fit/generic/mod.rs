@@ -8,9 +8,8 @@
 //!
 //! It takes points from all around an object and, on two cores, from some tenths of a second to about a second. Of made
 //! clouds (1500 points, noise of 0.5 % of the size) all 20 of each model are recovered within 2 % of the size, with a
-//! median of 0.04 to 0.08 %; with 20 % outliers too, but for tapered toroids (18) and those
-//! that are tapered, twisted and bent at once (15). It
-//! does not promise the global optimum.
+//! median of 0.04 to 0.08 %; with 20 % outliers too, but for supershapes (19) and toroids
+//! that are tapered, twisted and bent at once (17). It does not promise the global optimum.
 
 mod extended;
 mod hyperquadric;
