@@ -99,10 +99,16 @@ fn search(
     // a ring hides its own far wall, which only rays can tell
     let rays = if family.is_ring() && !sketch { COARSE_RAYS } else { 0 };
     for &(points, rounds, kept) in rounds {
-        for h in &mut ranked {
-            let schedule = coarse_schedule(h, rounds, rays);
+        for i in 0..ranked.len() {
+            let schedule = coarse_schedule(&ranked[i], rounds, rays);
             let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
-            *h = refine(h, points, terms, &schedule, work);
+            ranked[i] = refine(&ranked[i], points, terms, &schedule, work);
+            // on one side more than one body may be exact
+            if terms.sight != Sight::OneSide && is_exact(&ranked[i]) {
+                ranked.swap(0, i);
+                ranked.truncate(1);
+                break;
+            }
         }
         keep(&mut ranked, kept);
     }
