@@ -23,6 +23,8 @@ const SHORTLIST: usize = 8;
 const KEPT: usize = 4;
 /// More starts than this are sorted out by a sketch.
 const SKETCHED: usize = 16;
+/// More starts of a single view than this are sorted out on the way.
+const MANY: usize = 36;
 /// Starts that are kept though half of them are fewer.
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
@@ -91,6 +93,9 @@ fn search(
     let half = starts.len().div_ceil(2).max(LEAST_KEPT);
     let rounds: &[(&Sample, usize, usize)] = match (terms.sight, sketch) {
         (Sight::OneSide, true) => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
+        (Sight::OneSide, false) if starts.len() > MANY => {
+            &[(&cloud.coarse, 4, SKETCHED), (&cloud.coarse, 6, KEPT)]
+        }
         (Sight::OneSide, false) => &[(&cloud.coarse, 10, KEPT)],
         _ if starts.len() > SKETCHED => &[(&cloud.sketch, 4, SKETCHED), (&cloud.coarse, 8, KEPT)],
         // a start that is far behind after a few rounds does not catch up
