@@ -28,8 +28,8 @@ pub(super) const TWIST: usize = 14;
 /// Index of the first coordinate of the bend's curvature in a [`Row`].
 pub(super) const BEND: usize = 15;
 
-/// Exponents stay in this range (the practical range of FORMULAS §2).
-pub(super) const EXPONENTS: [f64; 2] = [0.05, 1.97];
+/// Exponents stay in this range: at 0 edges are sharp, at 2 sections are diamonds.
+pub(super) const EXPONENTS: [f64; 2] = [0.05, 1.99];
 /// Ring ratios stay in this range: under 1.01 the hole is a needle, over 15 the tube is a wire.
 pub(super) const RINGS: [f64; 2] = [1.01, 15.0];
 /// Slopes of tapers stay in this range: at 1 an end is an edge.
