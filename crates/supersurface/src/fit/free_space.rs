@@ -17,7 +17,7 @@ const CELLS: f64 = 40.0;
 const MARGIN: isize = 2;
 /// Cells around the object's picture that are searched; no whole number, so that its outermost points are not on the edge
 /// between two cells, where rounding would choose.
-const BORDER: f64 = 14.001;
+const BORDER: f64 = 14.25;
 
 /// Points of the cloud that were seen beside the object or behind it, for [`super::View::free`], more of them
 /// the nearer to its outline; none when the viewpoint is not known or lies within the object.
