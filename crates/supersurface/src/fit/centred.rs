@@ -2,11 +2,9 @@
 //! every fit works on, so that neither place nor turn nor unit matters. Points that determine no surface are told apart
 //! here.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Rotation3, SymmetricEigen, UnitQuaternion};
 
 use super::FitError;
-use super::patches::scatter;
-use super::start::axes_of;
 use crate::{Point, Vector};
 
 /// Where normalised coordinates lie in the frame of a cloud: `x = centre + scale axes q`.
@@ -98,6 +96,23 @@ fn principal_axes(points: &[Vector]) -> (Rotation3<f64>, [f64; 3]) {
     let (x, y) = (towards(0), towards(1));
     let turned = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     (Rotation3::from_matrix_unchecked(turned), [0, 1, 2].map(|k| mean(k, 2)))
+}
+
+/// Eigenvectors in rising order of the eigenvalues, right-handed.
+pub(super) fn axes_of(m: &Matrix3<f64>) -> Matrix3<f64> {
+    let eigen = SymmetricEigen::new(*m);
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let x: Vector = eigen.eigenvectors.column(order[0]).into();
+    let y: Vector = eigen.eigenvectors.column(order[1]).into();
+    Matrix3::from_columns(&[x, y, x.cross(&y)])
+}
+
+/// Covariance of points about their mean.
+pub(super) fn scatter<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> Matrix3<f64> {
+    let n = points.clone().count().max(1) as f64;
+    let mean: Vector = points.clone().sum::<Vector>() / n;
+    points.map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
 }
 
 /// The finite points.

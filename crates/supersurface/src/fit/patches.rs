@@ -1,8 +1,9 @@
 //! The neighbourhoods of points: how flat, how dense, which way they face. Surfaces are flat and dense; outliers are
 //! not.
 
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::SymmetricEigen;
 
+use super::centred::scatter;
 use super::neighbours::Neighbours;
 use super::start::quantile;
 use crate::Vector;
@@ -72,11 +73,4 @@ fn best(patches: &[Patch], share: f64, merit: impl Fn(&Patch) -> f64) -> Vec<Pat
     sorted.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
     sorted.truncate(count);
     sorted
-}
-
-/// Covariance of points about their mean.
-pub(super) fn scatter<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> Matrix3<f64> {
-    let n = points.clone().count().max(1) as f64;
-    let mean: Vector = points.clone().sum::<Vector>() / n;
-    points.map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>() / n
 }

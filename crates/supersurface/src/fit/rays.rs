@@ -1,7 +1,7 @@
 //! Where do free lines of sight lie deepest in a body?
 //!
-//! Along a line the distance to a superellipsoid has one valley, and the sign of its slope halves the way to it;
-//! a toroid may have two, so samples choose the deeper one first. All lines are searched side by side.
+//! Along a line the gauge of a superellipsoid has one valley, and the sign of its slope, which the normal tells, halves
+//! the way to it; a toroid may have two, so samples choose the deeper one first. All lines are searched side by side.
 
 use super::columns::{Evaluation, Sample};
 use super::parameters::Parameters;

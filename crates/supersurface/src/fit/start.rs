@@ -7,10 +7,11 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
 
-use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
+use nalgebra::{Matrix3, Rotation3};
 
+use super::centred::{axes_of, scatter};
 use super::parameters::{Family, Parameters, RINGS};
-use super::patches::{Patch, firmest, flattest, patches, scatter};
+use super::patches::{Patch, firmest, flattest, patches};
 use super::terms::{Sight, Terms};
 use crate::Vector;
 
@@ -122,16 +123,6 @@ fn push(out: &mut Vec<Frame>, axes: Matrix3<f64>, points: Vec<Vector>, terms: &T
     if terms.sight != Sight::OneSide || !out.iter().any(same) {
         out.push(Frame { axes, points, whole: false });
     }
-}
-
-/// Eigenvectors in rising order of the eigenvalues, right-handed.
-pub(super) fn axes_of(m: &Matrix3<f64>) -> Matrix3<f64> {
-    let eigen = SymmetricEigen::new(*m);
-    let mut order = [0, 1, 2];
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    let x: Vector = eigen.eigenvectors.column(order[0]).into();
-    let y: Vector = eigen.eigenvectors.column(order[1]).into();
-    Matrix3::from_columns(&[x, y, x.cross(&y)])
 }
 
 /// The frame with z along `normal` in which the footprint's bounding rectangle is least.

@@ -55,8 +55,9 @@ pub(super) struct Terms {
     pub(super) eyes: Vec<Eye>,
     /// How much of the surface the points can show.
     pub(super) sight: Sight,
-    /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much, nor twice of it
-    /// where less than all is seen: a side that no point shows is no reason to be larger than all that is seen.
+    /// Half the cloud's largest extent. On single views no half extent of the body may exceed it much; where less than all
+    /// is seen and no ray is known, none may exceed twice of it: a side that no point shows is no reason to be much larger
+    /// than all that is seen.
     pub(super) reach: f64,
 }
 

@@ -5,6 +5,7 @@ mod closest;
 mod combined;
 mod conformance;
 mod fit_generic;
+mod fit_turned;
 mod fit_views;
 mod floors;
 mod golden_antipodal;
