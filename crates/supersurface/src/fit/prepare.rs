@@ -1,6 +1,6 @@
 //! A view made ready: centred, thinned, with all that is known beside the points and frames to begin in.
 
-use super::centred::{Centred, Placement, spread_over};
+use super::centred::{Centred, Placement, axes_of, scatter, spread_over};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
@@ -143,8 +143,7 @@ impl Seen<'_> {
 
 /// Sides of the points' box along their principal axes.
 fn box_sides(points: &[Vector]) -> Vector {
-    let scatter: nalgebra::Matrix3<f64> = points.iter().map(|p| p * p.transpose()).sum();
-    let axes = nalgebra::SymmetricEigen::new(scatter).eigenvectors;
+    let axes = axes_of(&scatter(points.iter()));
     Vector::from_fn(|k, _| {
         let along = || points.iter().map(|p| p.dot(&axes.column(k)));
         let low = along().fold(f64::INFINITY, f64::min);
