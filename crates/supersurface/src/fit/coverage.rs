@@ -11,20 +11,33 @@ use std::f64::consts::PI;
 
 use super::columns::{Sample, distances};
 use super::neighbours::Neighbours;
+use super::noise::Mixture;
 use super::parameters::Parameters;
 use super::prepare::Normalised;
 use super::samples::sample;
-use super::solver::Hypothesis;
+use super::solver::{Hypothesis, NOISE_FLOOR};
 use super::terms::Sight;
 use crate::Vector;
 use crate::numeric::random::Stream;
 
 /// Coverage from which the points show all of the surface. Chance alone makes it less than 1.
 const COVERED: f64 = 0.79;
+/// What chance leaves of the coverage of a surface that is all seen.
+const BY_CHANCE: f64 = 0.9;
 
 /// True where the points are only on a part of the surface, though no sensor's place says so.
 pub(super) fn shows_a_part(cloud: &Normalised, h: &Hypothesis) -> bool {
     cloud.terms.sight != Sight::OneSide && coverage(h, &cloud.middle) < COVERED
+}
+
+/// Negative log-likelihood of points as a density on that part of a body which they cover, beside outliers in a box of some
+/// volume: a body that is cut where the points end has no advantage over one that goes on unseen.
+pub(super) fn covering_cost(h: &Hypothesis, points: &Sample, volume: f64) -> f64 {
+    let area = h.parameters.area() * (coverage(h, points) / BY_CHANCE).min(1.0);
+    let distances = distances(&h.parameters, points.points());
+    let mut mixture = Mixture { density: area / volume, ..h.mixture };
+    mixture.update(&distances, points.len(), [NOISE_FLOOR, f64::INFINITY], 4);
+    mixture.cost(&distances, points.len()) + points.len() as f64 * area.ln()
 }
 
 /// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius

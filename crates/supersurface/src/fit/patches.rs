@@ -26,9 +26,8 @@ pub(super) struct Patch {
     radius: f64,
 }
 
-/// Neighbourhoods spread over the cloud, of every n-th point from the given share of the first n on; none for too few
-/// points.
-pub(super) fn patches(points: &[Vector], from: f64) -> Vec<Patch> {
+/// Neighbourhoods spread over the cloud; none for too few points.
+pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
     if points.len() < 3 * NEIGHBOURS {
         return Vec::new();
     }
@@ -37,8 +36,7 @@ pub(super) fn patches(points: &[Vector], from: f64) -> Vec<Patch> {
     let mut neighbours = Neighbours::among(among.iter().copied());
     let stride = points.len().div_ceil(LOOKED_AT);
     let mut found = Vec::with_capacity(LOOKED_AT);
-    let first = (from * stride as f64) as usize;
-    for p in points.iter().skip(first).step_by(stride) {
+    for p in points.iter().step_by(stride) {
         let near = neighbours.nearest(p, NEIGHBOURS + 1);
         let Some((square, _)) = near.last() else { continue };
         let scatter = scatter(near.iter().map(|n| &among[n.1 as usize]));

@@ -2,14 +2,14 @@
 
 use super::Effort;
 use super::columns::Sample;
-use super::coverage::shows_a_part;
+use super::coverage::{covering_cost, shows_a_part};
 use super::finish::finish;
 use super::misfit::correlation;
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
 use super::prepare::Normalised;
 use super::solver::{Hypothesis, Schedule, Stopped, Workspace, refine};
-use super::start::{Frame, other_frames, starts, turned_frames};
+use super::start::{Frame, starts, turned_frames};
 use super::switch::{dual, relatives};
 use super::terms::{Sight, Terms};
 use crate::Vector;
@@ -34,8 +34,11 @@ pub(super) const EXACT: f64 = 1e-3;
 const LEASH: [f64; 2] = [f64::INFINITY, 1.5];
 /// How often the near-symmetries are tried (for both efforts).
 const SWITCHES: [usize; 2] = [1, 2];
-/// Share of points that a body may leave out without doubt.
+/// Share of points that a body may leave out before it is asked whether only a part is seen.
 const LEFT_OUT: f64 = 0.2;
+/// How many bodies are looked at to see whether only a part is seen, and the nats by which that must explain the points better.
+const DOUBTED: usize = 2;
+const PLAINLY: f64 = 2.0;
 /// Correlation of neighbouring deviations on a single view (whose noise comes in steps) above which the search went astray.
 const ASTRAY: f64 = 0.5;
 /// Least scale from which a body that was set to another shape settles.
@@ -48,22 +51,15 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     let mut work = Workspace::default();
     let mut pool = Vec::new();
     search(cloud, family, &cloud.frames, &mut pool, &mut work);
-    let doubtful = |h: &Hypothesis| h.mixture.outliers > LEFT_OUT && shows_a_part(cloud, h);
-    if pool.first().is_some_and(doubtful) {
-        search(cloud, family, &other_frames(&cloud.points, &cloud.terms), &mut pool, &mut work);
-    }
     if pool.is_empty() {
         pool.push(begin(&Parameters::ball(family), &cloud.terms));
     }
-    if !family.is_deformed() && shows_a_part(cloud, &pool[0]) {
+    if !family.is_deformed() {
         let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
-        let mut again = Vec::new();
-        for h in pool.iter().take(KEPT) {
-            let schedule = schedule(8, 0, h.mixture.scale);
-            add(&mut again, refine(h, &cloud.middle, &terms, &schedule, &mut work));
+        if let Some(mut parts) = in_part(cloud, &terms, &pool, &mut work) {
+            switch(cloud, &terms, &mut parts, &mut work);
+            return finish(cloud, &terms, &parts, &mut work);
         }
-        switch(cloud, &terms, &mut again, &mut work);
-        return finish(cloud, &terms, &again, &mut work);
     }
     let found = finish(cloud, &cloud.terms, &pool, &mut work);
     let thorough_view = cloud.terms.sight == Sight::OneSide && cloud.effort == Effort::Thorough;
@@ -73,6 +69,29 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
     let points: Vec<Vector> = cloud.coarse.points().collect();
     search(cloud, family, &turned_frames(&points, &cloud.terms), &mut pool, &mut work);
     finish(cloud, &cloud.terms, &pool, &mut work)
+}
+
+/// The best bodies of a pool by the terms of bodies of which a part is seen, where the points say that it is so: by what
+/// they cover of the best, or because another, on the part that they cover of it, explains them better.
+fn in_part(
+    cloud: &Normalised,
+    terms: &Terms,
+    pool: &[Hypothesis],
+    work: &mut Workspace,
+) -> Option<Vec<Hypothesis>> {
+    let Sight::AllAround { volume } = cloud.terms.sight else { return None };
+    let plainly = shows_a_part(cloud, &pool[0]);
+    if !plainly && pool[0].mixture.outliers < LEFT_OUT {
+        return None;
+    }
+    let mut parts = Vec::new();
+    for h in pool.iter().take(if plainly { KEPT } else { DOUBTED }) {
+        let schedule = schedule(8, 0, h.mixture.scale);
+        add(&mut parts, refine(h, &cloud.middle, terms, &schedule, work));
+    }
+    let cost = |h: &Hypothesis| covering_cost(h, &cloud.middle, volume);
+    let least = cost(&pool[0]) - PLAINLY;
+    (plainly || parts.iter().any(|h| cost(h) < least)).then_some(parts)
 }
 
 /// Adds what is found from some frames to a pool of hypotheses, best first.

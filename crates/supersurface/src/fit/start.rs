@@ -25,6 +25,9 @@ const EXPONENT: f64 = 0.6;
 const BENDING: f64 = 0.35;
 /// Turns of the twists from which is searched.
 const TWIST: f64 = 0.12;
+/// Shares of the neighbourhoods: the most flat and dense, and the flattest.
+const FIRM: f64 = 1.0 / 3.0;
+const FLAT: f64 = 0.5;
 /// Fewer neighbourhoods than this make no frame.
 const LEAST_PATCHES: usize = 8;
 /// Two frames whose axes agree within this cosine are one.
@@ -71,16 +74,14 @@ pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
         push(&mut out, upright(points, &support.normal), points.to_vec(), terms);
     }
     push(&mut out, axes_of(&scatter(points.iter())), points.to_vec(), terms);
-    by_patches(&mut out, &patches(points, 0.0), [1.0 / 3.0, 0.5], terms);
-    out
-}
-
-/// Frames by other neighbourhoods and by fewer of them, for where the first lead nowhere.
-pub(super) fn other_frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
-    let mut out = Vec::new();
-    let patches = patches(points, 0.5);
-    for shares in [[0.4, 0.3], [0.2, 0.15]] {
-        by_patches(&mut out, &patches, shares, terms);
+    let patches = patches(points);
+    let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
+    let firm = of(&firmest(&patches, FIRM));
+    let flat = flattest(&patches, FLAT);
+    if firm.len() >= LEAST_PATCHES {
+        push(&mut out, axes_of(&scatter(firm.iter())), firm, terms);
+        let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
+        push(&mut out, axes_of(&normals), of(&flat), terms);
     }
     out
 }
@@ -98,19 +99,6 @@ pub(super) fn turned_frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
         push(&mut out, turned, points.to_vec(), terms);
     }
     out
-}
-
-/// Frames by the given shares of the most flat and dense neighbourhoods and of the flattest.
-fn by_patches(out: &mut Vec<Frame>, patches: &[Patch], [firm, flat]: [f64; 2], terms: &Terms) {
-    let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
-    let firm = of(&firmest(patches, firm));
-    let flat = flattest(patches, flat);
-    if firm.len() < LEAST_PATCHES || flat.len() < LEAST_PATCHES {
-        return;
-    }
-    push(out, axes_of(&scatter(firm.iter())), firm, terms);
-    let normals = flat.iter().map(|p| p.normal * p.normal.transpose()).sum();
-    push(out, axes_of(&normals), of(&flat), terms);
 }
 
 /// Adds a frame. Two with the same axes differ only where outliers stretch one of them, which on a single view is left
