@@ -6,11 +6,22 @@ use nalgebra::{Matrix3, Rotation3};
 use super::parameters::{EXPONENTS, Parameters, RINGS};
 use crate::Vector;
 
+/// Share of the outside up to which a hole is closed, and that of the hole that is tried instead.
+const CLOSED: f64 = 0.1;
+const OPEN: f64 = 0.35;
+
 /// Bodies that are nearly `s`: other axis roles, the 45 degree dual, other holes, and to the only `eye` other depths.
 pub(super) fn relatives(s: &Parameters, eye: Option<Vector>) -> Vec<Parameters> {
     let mut out = Vec::new();
     if s.family.is_ring() {
-        out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
+        let hole = (s.ring - 1.0) / (s.ring + 1.0);
+        if hole > CLOSED {
+            out.extend([0.6, 1.5].map(|factor| other_hole(s, factor)));
+        } else {
+            // a ring seen from its side shows no hole
+            let open = other_hole(s, OPEN / hole);
+            out.extend(std::iter::once(open).chain(eye.map(|eye| other_depth(&open, &eye, 1.7))));
+        }
         out.extend(dual(s));
     } else if !s.family.is_deformed() {
         let others = [1, 2].map(|shift| cycled(s, shift));
