@@ -43,7 +43,7 @@ pub(super) fn covering_cost(h: &Hypothesis, points: &Sample, volume: f64) -> f64
 /// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius
 /// of a place on it, those that are missing are counted, those too many are not.
 fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
-    const PROBES: usize = 320;
+    const PROBES: usize = 160;
     /// Points due within the radius.
     const DUE: f64 = 20.0;
     let s: &Parameters = &h.parameters;
