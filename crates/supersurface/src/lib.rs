@@ -43,6 +43,7 @@ pub mod picture;
 pub mod pipeline;
 pub mod scene;
 pub mod segment;
+pub mod separate;
 pub mod shape;
 pub mod surface;
 

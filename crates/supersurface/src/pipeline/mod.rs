@@ -1,6 +1,5 @@
 //! Floor 9: cloud to table to objects to surfaces to grasps, with one options struct and one report.
 
-mod heap;
 
 use crate::cloud::PointCloud;
 use crate::fit::{Fit, FitError, FitOptions, View, fit, free_points, outline_points};
@@ -8,6 +7,7 @@ use crate::grasp::{Grasp, GraspOptions, Gripper, Refusal, Surroundings, plan};
 use crate::segment::{
     SegmentError, SegmentOptions, Segmentation, segment, segment_masks, segment_whole,
 };
+use crate::separate::{Around, separate};
 use crate::{Point, shape::Plane};
 
 /// Where the objects come from.
@@ -99,17 +99,16 @@ pub fn run(
     };
     let count = segmentation.objects.len();
     progress(Stage::Fit(count));
-    let fits = each(count, |i| {
-        let whole = segmentation.objects[i].clone();
-        let fit_points = |points: &[u32]| fit_object(cloud, &segmentation, points, options);
-        let fit = fit_points(&whole);
-        match options.objects {
-            Objects::Find => heap::parted(cloud, (whole, fit), &fit_points),
-            Objects::Whole | Objects::Given => vec![(whole, fit)],
-        }
-    });
-    let mut found: Vec<heap::Fitted> = fits.into_iter().flatten().collect();
-    found.sort_by_key(|(points, _)| points.first().copied());
+    let around = Around { cloud, support: segmentation.support };
+    let found = match options.objects {
+        Objects::Find => separate(cloud, &segmentation, &options.fit),
+        Objects::Whole | Objects::Given => each(count, |i| {
+            let points = segmentation.objects[i].clone();
+            let fit = fit_object(cloud, &segmentation, &points, options);
+            (points, fit)
+        }),
+    };
+    let _ = around;
     let (objects, fits): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     segmentation.objects = objects;
     let count = segmentation.objects.len();

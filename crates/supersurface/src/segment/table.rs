@@ -96,7 +96,7 @@ const COARSE_SAMPLE: usize = 5000;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
 /// Gap that things on the support may make in what is seen of it, in metres.
-const OBJECT_GAP: f64 = 0.12;
+const OBJECT_GAP: f64 = 0.25;
 
 /// The support that was found.
 #[derive(Clone, Debug)]

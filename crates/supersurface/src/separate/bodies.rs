@@ -1,0 +1,62 @@
+//! One surface for some points of a cloud, and how well it explains others.
+
+use crate::cloud::PointCloud;
+use crate::fit::{Fit, FitError, FitOptions, View, fit, free_points};
+use crate::shape::{Implicit, Plane};
+use crate::Point;
+
+/// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
+/// another object.
+const STANDING: f64 = 0.015;
+/// Points at which a surface is compared with what it should explain.
+const SOME: usize = 200;
+
+/// What is known of a scene beside the points of an object.
+#[derive(Clone, Copy, Debug)]
+pub struct Around<'a> {
+    /// The scene.
+    pub cloud: &'a PointCloud,
+    /// What the objects stand on.
+    pub support: Option<Plane>,
+}
+
+impl Around<'_> {
+    /// The surface of the points named, seen from where the cloud was.
+    pub fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
+        let free = free_points(self.cloud, object);
+        self.fit_view(object, self.cloud.viewpoint, &free, options)
+    }
+
+    /// The same for points of which a part may be seen from inside, as through the mouth of a cup.
+    pub(super) fn fit_hollow(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
+        self.fit_view(object, None, &[], options)
+    }
+
+    fn fit_view(
+        &self,
+        object: &[u32],
+        viewpoint: Option<Point>,
+        free: &[Point],
+        options: &FitOptions,
+    ) -> Result<Fit, FitError> {
+        let points: Vec<Point> = object.iter().map(|i| self.cloud.points[*i as usize]).collect();
+        let heights = |t: &Plane| points.iter().map(|p| t.height(p)).fold(f64::INFINITY, f64::min);
+        let standing = self.support.is_some_and(|t| heights(&t) < STANDING);
+        fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
+    }
+
+    /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points from a surface, in metres.
+    pub(super) fn typical(&self, points: &[u32], fit: &Fit) -> f64 {
+        let distance = |i: &u32| {
+            let p = &self.cloud.points[*i as usize];
+            (fit.surface.gauge(p) - 1.0).abs() / fit.surface.gradient(p).norm().max(1e-9)
+        };
+        let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
+        let mut distances: Vec<f64> = some.map(distance).collect();
+        if distances.is_empty() {
+            return f64::INFINITY;
+        }
+        let middle = distances.len() / 2;
+        *distances.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}

@@ -1,0 +1,177 @@
+//! What the image tells of two pieces: where they meet, and whether something hides what is between them.
+
+use std::collections::BTreeMap;
+
+use crate::cloud::PointCloud;
+use crate::fit::Fit;
+use crate::measure::first_hit;
+use crate::shape::Ray;
+use crate::{Direction, Point};
+
+/// An organised cloud whose pixels belong to pieces.
+pub(super) struct View<'a> {
+    points: &'a [Point],
+    width: usize,
+    eye: Point,
+    owner: Vec<u32>,
+}
+
+/// The owner of pixels that are in no piece.
+const NOBODY: u32 = u32::MAX;
+/// Two neighbouring pixels that are nearer than this, in metres, are one surface's.
+const CONTACT: f64 = 0.01;
+/// Pixels over which neighbours are sought.
+const ACROSS: usize = 6;
+/// Pixels of an outline that are looked at.
+const OUTLINE: usize = 120;
+/// Longest way between two pieces, as a share of the image's width.
+const FARTHEST: f64 = 0.22;
+/// How much nearer or farther than the way between two pieces something hides it or shows that it is empty, in metres.
+const NEARER: f64 = 0.006;
+const FARTHER: f64 = 0.008;
+/// Share of the way that must be hidden, and that may be empty.
+const HIDDEN: f64 = 0.6;
+const EMPTY: f64 = 0.15;
+/// A surface that lies so far before what was seen, in metres, is contradicted there.
+const BEFORE: f64 = 0.012;
+/// Lines of sight by which a surface is tried.
+const TRIED: usize = 300;
+
+/// Pairs of neighbouring pixels of two pieces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Border {
+    /// In the image.
+    pub(super) beside: u32,
+    /// In space too.
+    pub(super) touching: u32,
+}
+
+impl<'a> View<'a> {
+    /// The view of an organised cloud whose viewpoint is known.
+    pub(super) fn new(cloud: &'a PointCloud, pieces: &[&[u32]]) -> Option<Self> {
+        let [width, height] = cloud.grid.filter(|[w, h]| w * h == cloud.points.len())?;
+        let mut owner = vec![NOBODY; width * height];
+        for (k, piece) in pieces.iter().enumerate() {
+            piece.iter().for_each(|i| owner[*i as usize] = k as u32);
+        }
+        Some(Self { points: &cloud.points, width, eye: cloud.viewpoint?, owner })
+    }
+
+    fn range(&self, i: usize) -> f64 {
+        (self.points[i] - self.eye).norm()
+    }
+
+    /// Where pieces meet, by pairs of their numbers (the smaller first).
+    pub(super) fn borders(&self) -> BTreeMap<[usize; 2], Border> {
+        let mut out = BTreeMap::<[usize; 2], Border>::new();
+        for (i, own) in self.owner.iter().enumerate().filter(|(_, o)| **o != NOBODY) {
+            let room = self.width - 1 - i % self.width;
+            for (step, most) in [(1, room.min(ACROSS)), (self.width, ACROSS)] {
+                // the next pixel with an owner
+                let next = (1..=most).map(|k| i + k * step).take_while(|j| *j < self.owner.len());
+                let Some(j) = next.into_iter().find(|j| self.owner[*j] != NOBODY) else { continue };
+                let other = self.owner[j];
+                if other != *own {
+                    let pair = [*own.min(&other) as usize, *own.max(&other) as usize];
+                    let border = out.entry(pair).or_default();
+                    border.beside += 1;
+                    border.touching += u32::from((self.points[i] - self.points[j]).norm() < CONTACT);
+                }
+            }
+        }
+        out
+    }
+
+    /// The pixels at the border of a piece, not too many.
+    pub(super) fn outline(&self, piece: &[u32]) -> Vec<u32> {
+        let inside = |i: usize, j: Option<usize>| {
+            j.and_then(|j| self.owner.get(j)).is_some_and(|o| *o == self.owner[i])
+        };
+        let edge = |i: &&u32| {
+            let i = **i as usize;
+            let w = self.width;
+            ![i.checked_sub(1), Some(i + 1), i.checked_sub(w), Some(i + w)]
+                .into_iter()
+                .all(|j| inside(i, j))
+        };
+        let edge: Vec<u32> = piece.iter().filter(edge).copied().collect();
+        edge.iter().step_by(edge.len().div_ceil(OUTLINE).max(1)).copied().collect()
+    }
+
+    /// True where something nearer hides what is between two pieces, given by their outlines.
+    pub(super) fn hides_between(&self, a: &[u32], b: &[u32]) -> bool {
+        let place = |i: u32| {
+            let i = i as usize;
+            [(i % self.width) as f64, (i / self.width) as f64]
+        };
+        let apart = |i: &u32, j: &u32| {
+            let (p, q) = (place(*i), place(*j));
+            (p[0] - q[0]).hypot(p[1] - q[1])
+        };
+        let pairs = a.iter().flat_map(|i| b.iter().map(move |j| (i, j, apart(i, j))));
+        let Some((i, j, length)) = pairs.min_by(|p, q| p.2.total_cmp(&q.2)) else { return false };
+        if length > FARTHEST * self.width as f64 {
+            return false;
+        }
+        let (from, to) = (place(*i), place(*j));
+        let ends = [*i, *j].map(|i| self.range(i as usize).recip());
+        let steps = (length as usize).max(1);
+        let (mut hidden, mut empty, mut all) = (0.0, 0.0, 0.0);
+        for k in 1..steps {
+            let share = k as f64 / steps as f64;
+            let [u, v] = [0, 1].map(|k| (from[k] + share * (to[k] - from[k])).round() as usize);
+            let at = v * self.width + u;
+            let between = (ends[0] + share * (ends[1] - ends[0])).recip();
+            let seen = self.range(at);
+            all += 1.0;
+            if seen.is_nan() || seen < between - NEARER {
+                hidden += 1.0;
+            } else if seen > between + FARTHER {
+                empty += 1.0;
+            }
+        }
+        all > 0.0 && hidden >= HIDDEN * all && empty < EMPTY * all
+    }
+
+    /// Share of the lines of sight that meet a surface which saw something behind it: those to other pixels than the
+    /// pieces' own, in the box of these in the image.
+    pub(super) fn contradicted(&self, fit: &Fit, pieces: [&[u32]; 2]) -> f64 {
+        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+        for i in pieces.iter().copied().flatten() {
+            let at = [*i as usize % self.width, *i as usize / self.width];
+            low = [0, 1].map(|k| low[k].min(at[k]));
+            high = [0, 1].map(|k| high[k].max(at[k]));
+        }
+        let area = (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
+        let step = ((area / TRIED) as f64).sqrt().ceil().max(1.0) as usize;
+        let (mut met, mut before) = (0.0, 0.0);
+        let local = fit.surface.pose().inverse();
+        let origin = local * self.eye;
+        for v in (low[1]..=high[1]).step_by(step) {
+            for u in (low[0]..=high[0]).step_by(step) {
+                let i = v * self.width + u;
+                let own = self.owner[i] != NOBODY && {
+                    let inside = |p: &[u32]| p.first().is_some_and(|f| self.owner[*f as usize] == self.owner[i]);
+                    pieces.iter().any(|p| inside(p))
+                };
+                let Some(way) = Direction::try_new(local * (self.points[i] - self.eye), 1e-9) else { continue };
+                let ray = Ray { origin, direction: way };
+                let Some(hit) = first_hit(fit.surface.shape(), &ray, 1e3) else { continue };
+                met += 1.0;
+                before += f64::from(u8::from(!own && hit.distance < self.range(i) - BEFORE));
+            }
+        }
+        if met > 0.0 { before / met } else { 0.0 }
+    }
+
+    /// Share of some points at which a surface faces the eye.
+    pub(super) fn facing(&self, fit: &Fit, points: &[u32]) -> f64 {
+        use crate::shape::Implicit;
+        let some = || points.iter().step_by(points.len().div_ceil(100).max(1));
+        let faces = |i: &&u32| {
+            let p = &self.points[**i as usize];
+            fit.surface.gradient(p).dot(&(self.eye - p)) > 0.0
+        };
+        some().filter(faces).count() as f64 / some().count().max(1) as f64
+    }
+}
