@@ -100,16 +100,18 @@ pub fn run(
     let count = segmentation.objects.len();
     progress(Stage::Fit(count));
     let around = Around { cloud, support: segmentation.support };
-    let found = match options.objects {
-        Objects::Find => separate(cloud, &segmentation, &options.fit),
-        Objects::Whole | Objects::Given => each(count, |i| {
-            let points = segmentation.objects[i].clone();
-            let fit = fit_object(cloud, &segmentation, &points, options);
-            (points, fit)
-        }),
+    let (objects, fits): (Vec<_>, Vec<_>) = match options.objects {
+        Objects::Find => {
+            let things = separate(cloud, &segmentation, &options.fit);
+            things.into_iter().map(|thing| (thing.points, thing.fit)).unzip()
+        }
+        Objects::Whole | Objects::Given => {
+            let fit = |i: usize| fit_object(cloud, &segmentation, &segmentation.objects[i], options);
+            let fits = each(count, fit);
+            (segmentation.objects.clone(), fits)
+        }
     };
     let _ = around;
-    let (objects, fits): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     segmentation.objects = objects;
     let count = segmentation.objects.len();
     progress(Stage::Grasp(count));

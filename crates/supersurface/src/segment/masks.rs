@@ -39,6 +39,6 @@ pub fn segment_masks(
         support: support.as_ref().map(|s| s.plane),
         support_noise: support.as_ref().map_or(0.0, |s| s.noise),
         objects,
-        dropped: Vec::new(),
+        ..Segmentation::default()
     })
 }

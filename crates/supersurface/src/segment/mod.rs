@@ -47,9 +47,16 @@ pub struct Segmentation {
     pub objects: Vec<Vec<u32>>,
     /// What was seen above the support and left out, with the reason.
     pub dropped: Vec<Dropped>,
+    /// The image that an unorganised cloud was taken as.
+    image: Option<Raster>,
 }
 
 impl Segmentation {
+    /// The image that an unorganised cloud was taken as.
+    pub(crate) const fn image(&self) -> Option<&Raster> {
+        self.image.as_ref()
+    }
+
     /// What each of a cloud's points is: k for object number k (from 1), -1 for a piece that was
     /// dropped and for points that are not finite, 0 for the rest, support and background.
     pub fn labels(&self, points: &[Point]) -> Vec<i32> {
@@ -226,7 +233,7 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         Some(_) => None,
         None => Raster::of(cloud, &seen, &sight, &normal, &mut random),
     };
-    let (objects, dropped) = match raster {
+    let (objects, dropped) = match &raster {
         None => part(cloud, true, &support, &sight, options),
         Some(raster) => {
             let sight = Sight { pixel: Some(raster.pixel), ..sight };
@@ -241,6 +248,7 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         support_noise: support.noise,
         objects,
         dropped,
+        image: raster,
     })
 }
 

@@ -13,7 +13,7 @@ use crate::segment::sight::Sight;
 use crate::{Direction, Point, Vector};
 
 /// An organised cloud that stands for another.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Raster {
     /// The organised cloud.
     pub(crate) cloud: PointCloud,
@@ -108,6 +108,14 @@ impl Raster {
             ..PointCloud::default()
         };
         Some(Self { cloud: image, pixel, members })
+    }
+
+    /// The pixels that stand for points, both in ascending order.
+    pub(crate) fn pixels(&self, points: &[u32]) -> Vec<u32> {
+        let of = |m: &&(u32, u32)| points.binary_search(&m.1).is_ok();
+        let mut pixels: Vec<u32> = self.members.iter().filter(of).map(|m| m.0).collect();
+        pixels.dedup();
+        pixels
     }
 
     /// The points that stand behind pixels, in ascending order.

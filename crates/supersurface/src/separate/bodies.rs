@@ -1,7 +1,7 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
 use crate::cloud::PointCloud;
-use crate::fit::{Fit, FitError, FitOptions, View, fit, free_points};
+use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points};
 use crate::shape::{Implicit, Plane};
 use crate::Point;
 
@@ -10,6 +10,9 @@ use crate::Point;
 const STANDING: f64 = 0.015;
 /// Points at which a surface is compared with what it should explain.
 const SOME: usize = 200;
+
+/// How pieces are fitted.
+pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
 
 /// What is known of a scene beside the points of an object.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +46,15 @@ impl Around<'_> {
         let heights = |t: &Plane| points.iter().map(|p| t.height(p)).fold(f64::INFINITY, f64::min);
         let standing = self.support.is_some_and(|t| heights(&t) < STANDING);
         fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
+    }
+
+    /// Height of the lowest points over the support without the last 2 %, in metres; 0 without a support.
+    pub(super) fn lowest(&self, points: &[u32]) -> f64 {
+        let Some(support) = self.support.filter(|_| !points.is_empty()) else { return 0.0 };
+        let height = |i: &u32| support.height(&self.cloud.points[*i as usize]);
+        let mut heights: Vec<f64> = points.iter().map(height).collect();
+        let cut = heights.len() / 50;
+        *heights.select_nth_unstable_by(cut, f64::total_cmp).1
     }
 
     /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points from a surface, in metres.

@@ -1,213 +1,140 @@
 //! Floor 8: things that touch, told apart; pieces of one thing, put together.
 //!
-//! What stands on a support comes as clumps. Each is cut at its concave edges, and the pieces are joined again where
-//! there is a reason and one surface explains them about as well as their own do:
+//! What stands on a support comes as clumps. Each is cut at its concave edges, and pieces are joined again where there is
+//! a reason to and one surface explains them about as well as their own do ([`Reason`]). That alone is no reason: two
+//! boxes of the same footprint, one on the other, are explained by one box.
 //!
-//! - *whole*: the clump is one body, and its pieces are due to noise or a shallow dent;
-//! - *behind*: something nearer hides what is between them;
-//! - *hollow*: one is the inside of the other, seen through its mouth;
-//! - *bit*: nothing carries it, as a handle or a spout.
-//!
-//! That a surface explains two pieces that meet at a concave edge is no reason: two boxes of the same footprint, one on
-//! the other, are explained by one box.
+//! The reasons to join pieces are seen in the image: clouds of several views, which are none, keep their pieces but for
+//! clumps that are one body.
 
+mod bits;
 mod bodies;
+mod clump;
+mod joints;
 mod view;
+
+use std::collections::BTreeMap;
 
 pub use bodies::Around;
 
 use crate::cloud::{PointCloud, Sets};
-use crate::fit::{Family, Fit, FitError, FitOptions};
-use crate::segment::{Segmentation, convex_pieces};
+use crate::fit::{Fit, FitError, FitOptions};
+use crate::segment::Segmentation;
+use clump::clumped;
 use view::View;
 
-/// Points with their surface.
-pub type Fitted = (Vec<u32>, Result<Fit, FitError>);
+/// Why pieces between concave edges are one object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Reason {
+    /// One body explains the whole clump: there is but a dent.
+    Whole,
+    /// Something nearer hides what is between them, and one body explains both.
+    Behind,
+    /// One is the inside of the other, seen through its mouth: one body explains both, and shows its inside at one of them.
+    Hollow,
+    /// The smaller lies in a dent of the larger, and one body explains both.
+    Dent,
+    /// Nothing carries it but its neighbour: a handle, a spout.
+    Hanging,
+    /// Too small to be an object.
+    Sliver,
+}
 
-/// Share of a clump's points under which a piece is a sliver, and the points of the least piece.
-const SLIVER: f64 = 0.02;
-const LEAST: usize = 150;
+impl std::fmt::Display for Reason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Whole => "one body with dents",
+            Self::Behind => "behind something nearer",
+            Self::Hollow => "its inside",
+            Self::Dent => "beside a dent",
+            Self::Hanging => "carried by it alone",
+            Self::Sliver => "a sliver of it",
+        })
+    }
+}
 
-const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
+/// An object of a scene.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Thing {
+    /// Its points, in ascending order.
+    pub points: Vec<u32>,
+    /// Its surface, or why its points give none.
+    pub fit: Result<Fit, FitError>,
+    /// Why its pieces were put together; none for an object of one piece.
+    pub joined: Vec<Reason>,
+}
 
+/// A piece between concave edges.
+#[derive(Clone, Debug)]
 struct Piece {
     points: Vec<u32>,
+    /// The clump that it was cut from.
     clump: usize,
-    fit: Option<Fit>,
+    /// Median distance of its points from their own surface, in metres.
     own: f64,
+    /// Height of its lowest points over the support, in metres.
     low: f64,
+    joined: Vec<Reason>,
 }
 
-fn env(name: &str, default: f64) -> f64 {
-    std::env::var(name).map_or(default, |x| x.parse().unwrap())
-}
-
-/// The objects of a scene with their surfaces, in the order of their first points.
+/// The objects that the clumps of a segmentation consist of, in the order of their first points.
 pub fn separate(
     cloud: &PointCloud,
     segmentation: &Segmentation,
     options: &FitOptions,
-) -> Vec<Fitted> {
-    let debug = std::env::var("SEPDBG").is_ok();
-    let around = Around { cloud, support: segmentation.support };
-    let clumps = each(segmentation.objects.len(), |k| clump(&around, &segmentation.objects[k], options));
-    let mut done: Vec<Fitted> = Vec::new();
-    let mut pieces: Vec<Piece> = Vec::new();
-    for (k, clump) in clumps.into_iter().enumerate() {
-        match clump {
-            Clump::Whole(points, fit) => {
-                let own = fit.as_ref().map_or(f64::INFINITY, |f| around.typical(&points, f));
-                let low = lowest(&around, &points);
-                pieces.push(Piece { points, clump: k, fit: fit.ok(), own, low });
-            }
-            Clump::Parts(parts) => {
-                for (points, fit) in parts {
-                    let own = fit.as_ref().map_or(f64::INFINITY, |f| around.typical(&points, f));
-                    let low = lowest(&around, &points);
-                    pieces.push(Piece { points, clump: k, fit: fit.ok(), own, low });
-                }
-            }
+) -> Vec<Thing> {
+    let image = segmentation.image();
+    let scene = Around { cloud: image.map_or(cloud, |i| &i.cloud), support: segmentation.support };
+    let clumps = each(segmentation.objects.len(), |k| {
+        let points = &segmentation.objects[k];
+        match image {
+            Some(image) => clumped(&scene, k, &image.pixels(points)),
+            None => clumped(&scene, k, points),
         }
-    }
-    if debug {
-        for (k, p) in pieces.iter().enumerate() {
-            let some: Vec<u32> = p.points.iter().step_by(p.points.len().div_ceil(40).max(1)).copied().collect();
-            eprintln!("PIECE {k} clump {} n {} low {:.3} own {:.4} some {some:?}", p.clump, p.points.len(), p.low, p.own);
-        }
-    }
-    let all: Vec<&[u32]> = pieces.iter().map(|p| &p.points[..]).collect();
-    let mut sets = Sets::new(pieces.len());
-    if let Some(view) = View::new(cloud, &all) {
-        let borders = view.borders();
-        let outlines: Vec<Vec<u32>> = pieces.iter().map(|p| view.outline(&p.points)).collect();
-        let mut pairs = Vec::new();
-        for a in 0..pieces.len() {
-            for b in a + 1..pieces.len() {
-                pairs.push([a, b]);
-            }
-        }
-        let joints = each(pairs.len(), |k| {
-            let [a, b] = pairs[k];
-            let border = borders.get(&[a, b]).copied().unwrap_or_default();
-            let (p, q) = (&pieces[a], &pieces[b]);
-            let union = || {
-                let mut points = [&p.points[..], &q.points[..]].concat();
-                points.sort_unstable();
-                points
-            };
-            let mut found: Option<(f64, &'static str)> = None;
-            let mut offer = |score: f64, why| {
-                if found.is_none_or(|f| score < f.0) {
-                    found = Some((score, why));
-                }
-            };
-            let worth = |fit: &Fit| {
-                let ratio = |piece: &Piece| {
-                    let q = around.typical(&piece.points, fit);
-                    if q > env("WORST", 0.003) { f64::INFINITY } else { q / (env("RATIO", 1.8) * piece.own).max(env("SLIGHT", 0.0023)) }
-                };
-                ratio(p).max(ratio(q))
-            };
-            if border.touching <= 15 && view.hides_between(&outlines[a], &outlines[b]) {
-                if let Ok(fit) = around.fit(&union(), &QUICK) {
-                    let (score, against) = (worth(&fit), view.contradicted(&fit, [&p.points, &q.points]));
-                    if debug {
-                        eprintln!("behind {a} {b} clumps {} {} n {} {} score {score:.2} against {against:.2}", p.clump, q.clump, p.points.len(), q.points.len());
-                    }
-                    if score + 2.0 * against < 0.9 && score < 0.7 {
-                        offer(score, "behind");
-                    }
-                }
-            }
-            if border.beside >= 50 && border.touching * 4 < border.beside {
-                if let Ok(fit) = around.fit_hollow(&union(), &QUICK) {
-                    let score = worth(&fit);
-                    let (f, g) = (view.facing(&fit, &p.points), view.facing(&fit, &q.points));
-                    if debug {
-                        eprintln!("hollow {a} {b} n {} {} border {border:?} score {score:.2} facing {f:.2} {g:.2}", p.points.len(), q.points.len());
-                    }
-                    if score < 0.6 && f.max(g) >= 0.8 && f.min(g) <= 0.2 {
-                        offer(score, "hollow");
-                    }
-                }
-            }
-            let (small, large) = (p.points.len().min(q.points.len()), p.points.len().max(q.points.len()));
-            if border.touching > 15 && 10 * small < 3 * large {
-                let score = around.fit(&union(), &QUICK).map_or(9.0, |fit| worth(&fit));
-                if score < 0.6 { offer(score, "dent"); }
-                if debug {
-                eprintln!("touch {a} {b} clumps {} {} n {} {} low {:.3} {:.3} border {border:?} score {score:.2} own {:.4} {:.4}", p.clump, q.clump, p.points.len(), q.points.len(), p.low, q.low, p.own, q.own);
-                }
-            }
-            found
-        });
-        let mut ranked: Vec<(f64, [usize; 2], &str)> = joints.into_iter().zip(&pairs).filter_map(|(j, pair)| j.map(|(s, w)| (s, *pair, w))).collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (score, [a, b], why) in ranked {
-            if debug {
-                eprintln!("JOIN {why} {a} {b} score {score:.2}");
-            }
-            sets.join(a, b);
-        }
-    }
-    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); pieces.len()];
-    for k in 0..pieces.len() {
-        groups[sets.root(k)].push(k);
-    }
-    groups.retain(|g| !g.is_empty());
-    let objects = each(groups.len(), |k| {
-        let mut points: Vec<u32> = groups[k].iter().flat_map(|p| pieces[*p].points.iter().copied()).collect();
-        points.sort_unstable();
-        let fit = around.fit(&points, options);
-        (points, fit)
     });
-    done.extend(objects);
-    done.sort_by_key(|(points, _)| points.first().copied());
-    done
-}
-
-fn lowest(around: &Around<'_>, points: &[u32]) -> f64 {
-    let Some(support) = around.support else { return 0.0 };
-    let mut heights: Vec<f64> = points.iter().map(|i| support.height(&around.cloud.points[*i as usize])).collect();
-    let k = heights.len() / 50;
-    *heights.select_nth_unstable_by(k, f64::total_cmp).1
-}
-
-enum Clump {
-    Whole(Vec<u32>, Result<Fit, FitError>),
-    Parts(Vec<Fitted>),
-}
-
-/// A clump as one body, where its pieces are explained by it, or in its pieces.
-fn clump(around: &Around<'_>, points: &[u32], options: &FitOptions) -> Clump {
-    let pieces = convex_pieces(around.cloud, points);
-    let least = LEAST.max((SLIVER * points.len() as f64) as usize);
-    let (large, small): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
-    let whole = || (points.to_vec(), around.fit(points, options));
-    if large.len() < 2 {
-        let (points, fit) = whole();
-        return Clump::Whole(points, fit);
-    }
-    let (points, fit) = whole();
-    let mut parts: Vec<Fitted> = large.into_iter().map(|p| { let f = around.fit(&p, &QUICK); (p, f) }).collect();
-    if let Ok(fit) = &fit {
-        let explained = parts.iter().all(|(p, f)| {
-            let own = f.as_ref().map_or(f64::INFINITY, |f| around.typical(p, f));
-            around.typical(p, fit) < (env("WRATIO", 1.3) * own).max(env("WSLIGHT", 0.0012))
-        });
-        if explained {
-            return Clump::Whole(points, Ok(fit.clone()));
+    let pieces: Vec<Piece> = clumps.into_iter().flatten().collect();
+    let groups = match View::new(scene.cloud, pieces.iter().map(|p| &p.points[..])) {
+        Some(view) => grouped(&scene, &view, &pieces),
+        None => (0..pieces.len()).map(|k| (vec![k], Vec::new())).collect(),
+    };
+    let around = Around { cloud, ..scene };
+    let mut things = each(groups.len(), |k| {
+        let (members, reasons) = &groups[k];
+        let own = members.iter().map(|m| &pieces[*m]);
+        let mut points: Vec<u32> = own.clone().flat_map(|p| &p.points).copied().collect();
+        points.sort_unstable();
+        if let Some(image) = image {
+            points = image.back(&points);
         }
+        let mut joined: Vec<Reason> = own.flat_map(|p| &p.joined).chain(reasons).copied().collect();
+        joined.sort_unstable();
+        joined.dedup();
+        Thing { fit: around.fit(&points, options), points, joined }
+    });
+    things.sort_by_key(|thing| thing.points.first().copied());
+    things
+}
+
+/// The pieces that are one object, and why.
+fn grouped(scene: &Around<'_>, view: &View<'_>, pieces: &[Piece]) -> Vec<(Vec<usize>, Vec<Reason>)> {
+    let borders = view.borders();
+    let mut sets = Sets::new(pieces.len());
+    let mut reasons: Vec<(usize, Reason)> = Vec::new();
+    for joint in joints::joints(scene, view, pieces, &borders) {
+        sets.join(joint.pieces[0], joint.pieces[1]);
+        reasons.push((joint.pieces[0], joint.reason));
     }
-    for sliver in small {
-        let distance = |p: &Fitted| p.1.as_ref().map_or(f64::INFINITY, |f| around.typical(&sliver, f));
-        let nearest = parts.iter().map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((k, d)) = nearest && d < 0.006 {
-            parts[k].0.extend(sliver);
-            parts[k].0.sort_unstable();
-        }
+    bits::hang_on(scene, view, pieces, &borders, &mut sets, &mut reasons);
+    let mut groups: BTreeMap<usize, (Vec<usize>, Vec<Reason>)> = BTreeMap::new();
+    for k in 0..pieces.len() {
+        groups.entry(sets.root(k)).or_default().0.push(k);
     }
-    Clump::Parts(parts)
+    for (k, reason) in reasons {
+        groups.entry(sets.root(k)).or_default().1.push(reason);
+    }
+    groups.into_values().collect()
 }
 
 /// The results of `work` for 0..n in order, on all cores where the feature `parallel` is on.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::cloud::PointCloud;
 use crate::fit::Fit;
 use crate::measure::first_hit;
-use crate::shape::Ray;
-use crate::{Direction, Point};
+use crate::shape::{Implicit, Ray};
+use crate::{Direction, Point, Vector};
 
 /// An organised cloud whose pixels belong to pieces.
 pub(super) struct View<'a> {
@@ -37,6 +37,13 @@ const BEFORE: f64 = 0.012;
 /// Lines of sight by which a surface is tried.
 const TRIED: usize = 300;
 
+/// Pixels without reading that are passed over under a piece.
+const SKIP: usize = 8;
+/// Way behind per way down from which the view is too oblique to miss a side: 22 degrees off the vertical.
+const SLANT: f64 = 0.4;
+/// What lies so far behind a piece, in metres, is not its own side.
+const WELL_BEHIND: f64 = 0.016;
+
 /// Pairs of neighbouring pixels of two pieces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Border {
@@ -48,10 +55,13 @@ pub(super) struct Border {
 
 impl<'a> View<'a> {
     /// The view of an organised cloud whose viewpoint is known.
-    pub(super) fn new(cloud: &'a PointCloud, pieces: &[&[u32]]) -> Option<Self> {
+    pub(super) fn new<'p>(
+        cloud: &'a PointCloud,
+        pieces: impl Iterator<Item = &'p [u32]>,
+    ) -> Option<Self> {
         let [width, height] = cloud.grid.filter(|[w, h]| w * h == cloud.points.len())?;
         let mut owner = vec![NOBODY; width * height];
-        for (k, piece) in pieces.iter().enumerate() {
+        for (k, piece) in pieces.enumerate() {
             piece.iter().for_each(|i| owner[*i as usize] = k as u32);
         }
         Some(Self { points: &cloud.points, width, eye: cloud.viewpoint?, owner })
@@ -166,12 +176,29 @@ impl<'a> View<'a> {
 
     /// Share of some points at which a surface faces the eye.
     pub(super) fn facing(&self, fit: &Fit, points: &[u32]) -> f64 {
-        use crate::shape::Implicit;
         let some = || points.iter().step_by(points.len().div_ceil(100).max(1));
         let faces = |i: &&u32| {
             let p = &self.points[**i as usize];
             fit.surface.gradient(p).dot(&(self.eye - p)) > 0.0
         };
         some().filter(faces).count() as f64 / some().count().max(1) as f64
+    }
+
+    /// True when under most of a piece's lower edge something is seen that is well behind it: were there a side below the
+    /// edge, it would be seen instead. From straight above nothing can be told.
+    pub(super) fn hangs(&self, piece: &[u32], up: &Vector) -> bool {
+        let mut lowest = vec![NOBODY; self.width];
+        piece.iter().for_each(|i| lowest[*i as usize % self.width] = *i);
+        let (mut columns, mut free) = (0, 0);
+        for i in lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize) {
+            let under = (1..=SKIP).map(|k| i + k * self.width).take_while(|j| *j < self.points.len());
+            let Some(j) = under.into_iter().find(|j| self.range(*j).is_finite()) else { continue };
+            columns += 1;
+            let step = self.points[j] - self.points[i];
+            let drop = -step.dot(up);
+            let behind = (step + up * drop).norm() > SLANT * drop.abs();
+            free += usize::from(behind && self.range(j) > self.range(i) + WELL_BEHIND);
+        }
+        columns >= 3 && 10 * free > 7 * columns
     }
 }

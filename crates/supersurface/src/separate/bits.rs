@@ -1,0 +1,93 @@
+//! Pieces that are nothing by themselves: insides cut at random, and what only a neighbour carries.
+
+use std::collections::BTreeMap;
+
+use super::bodies::{Around, QUICK};
+use super::view::{Border, View};
+use super::{Piece, Reason};
+use crate::cloud::Sets;
+
+/// Height over the support from which a piece may hang, in metres.
+const ALOFT: f64 = 0.02;
+/// Share of its neighbour's points up to which a piece is a bit of it: where it hangs, and where it does not.
+const HANGING: f64 = 0.3;
+const CRUMB: f64 = 0.06;
+/// Pairs of pixels from which pieces touch.
+const TOUCH: u32 = 5;
+/// An inside lies so near to the body of its outside, in metres, and faces the eye at so few of its points.
+const NEAR: f64 = 0.0023;
+const INSIDE: f64 = 0.2;
+
+/// Joins these to the sets that they belong to, the smallest first.
+pub(super) fn hang_on(
+    scene: &Around<'_>,
+    view: &View<'_>,
+    pieces: &[Piece],
+    borders: &BTreeMap<[usize; 2], Border>,
+    sets: &mut Sets,
+    reasons: &mut Vec<(usize, Reason)>,
+) {
+    insides(scene, view, pieces, sets, reasons);
+    let Some(support) = scene.support else { return };
+    let up = support.normal();
+    let mut smallest: Vec<usize> = (0..pieces.len()).collect();
+    smallest.sort_by_key(|k| (pieces[*k].points.len(), *k));
+    for k in smallest {
+        // the set that it touches most
+        let mut touching = BTreeMap::<usize, u32>::new();
+        for ([a, b], border) in borders.iter().filter(|([a, b], _)| *a == k || *b == k) {
+            let root = sets.root(a + b - k);
+            if root != sets.root(k) {
+                *touching.entry(root).or_default() += border.touching;
+            }
+        }
+        let Some((root, pairs)) = touching.into_iter().max_by_key(|(root, n)| (*n, pieces.len() - root))
+        else {
+            continue;
+        };
+        let size = |root: usize, sets: &mut Sets| {
+            (0..pieces.len())
+                .filter(|j| sets.root(*j) == root)
+                .map(|j| pieces[j].points.len())
+                .sum::<usize>() as f64
+        };
+        let own_root = sets.root(k);
+        let share = size(own_root, sets) / size(root, sets);
+        let hangs = || pieces[k].low > ALOFT && view.hangs(&pieces[k].points, &up);
+        if pairs >= TOUCH && (share < CRUMB || share < HANGING && hangs()) {
+            sets.join(root, k);
+            reasons.push((k, if share < CRUMB { Reason::Sliver } else { Reason::Hanging }));
+        }
+    }
+}
+
+/// Joins what the body of a hollow set explains as its inside.
+fn insides(
+    scene: &Around<'_>,
+    view: &View<'_>,
+    pieces: &[Piece],
+    sets: &mut Sets,
+    reasons: &mut Vec<(usize, Reason)>,
+) {
+    let hollow: Vec<usize> =
+        reasons.iter().filter(|r| r.1 == Reason::Hollow).map(|r| r.0).collect();
+    for k in hollow {
+        let root = sets.root(k);
+        let members = (0..pieces.len()).filter(|j| sets.root(*j) == root);
+        let mut points: Vec<u32> =
+            members.flat_map(|j| &pieces[j].points).copied().collect();
+        points.sort_unstable();
+        let Ok(body) = scene.fit_hollow(&points, &QUICK) else { continue };
+        for j in 0..pieces.len() {
+            let piece = &pieces[j];
+            if sets.root(j) != sets.root(k)
+                && piece.clump == pieces[k].clump
+                && scene.typical(&piece.points, &body) < NEAR
+                && view.facing(&body, &piece.points) <= INSIDE
+            {
+                sets.join(j, k);
+                reasons.push((j, Reason::Hollow));
+            }
+        }
+    }
+}

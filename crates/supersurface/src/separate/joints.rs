@@ -1,0 +1,125 @@
+//! Pairs of pieces that one surface explains, where there is a reason to think that they are one object.
+
+use std::collections::BTreeMap;
+
+use super::bodies::{Around, QUICK};
+use super::view::{Border, View};
+use super::{Piece, Reason, each};
+use crate::fit::Fit;
+
+/// A pair of pieces that are one object.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Joint {
+    pub(super) pieces: [usize; 2],
+    pub(super) reason: Reason,
+    /// How badly one surface explains both; 1 is the most.
+    cost: f64,
+}
+
+/// How much worse than a piece's own surface that of both may explain it, up to which distance that does not matter, and
+/// from which nothing is explained, in metres.
+const WORSE: f64 = 1.1;
+const SLIGHT: f64 = 0.0014;
+const POOR: f64 = 0.003;
+/// What contradicted lines of sight cost, as a multiple of their share.
+const AGAINST: f64 = 3.3;
+/// What a surface that goes on behind something may cost.
+const BEHIND: f64 = 1.5;
+/// Pairs of pixels up to which pieces do not touch.
+const APART: u32 = 15;
+/// Pairs of pixels from which an inside and an outside meet at a rim, and how few of them, one in so many, may touch.
+const RIM: u32 = 50;
+const JUMPS: u32 = 4;
+/// Shares of points at which the surface faces the eye on the outside and on the inside.
+const OUTSIDE: f64 = 0.8;
+const INSIDE: f64 = 0.2;
+/// Share of the larger piece's points up to which the smaller may be due to a dent.
+const DENT: f64 = 0.3;
+
+/// All pairs that hold, the best first.
+pub(super) fn joints(
+    scene: &Around<'_>,
+    view: &View<'_>,
+    pieces: &[Piece],
+    borders: &BTreeMap<[usize; 2], Border>,
+) -> Vec<Joint> {
+    let outlines: Vec<Vec<u32>> = pieces.iter().map(|p| view.outline(&p.points)).collect();
+    let pairs: Vec<[usize; 2]> =
+        (0..pieces.len()).flat_map(|a| (a + 1..pieces.len()).map(move |b| [a, b])).collect();
+    let tried = each(pairs.len(), |k| {
+        let [a, b] = pairs[k];
+        let border = borders.get(&[a, b]).copied().unwrap_or_default();
+        let pair = Pair { scene, view, pieces: [&pieces[a], &pieces[b]], border };
+        let found = [
+            pair.behind([&outlines[a], &outlines[b]]).map(|cost| (cost, Reason::Behind)),
+            pair.hollow().map(|cost| (cost, Reason::Hollow)),
+            pair.dent().map(|cost| (cost, Reason::Dent)),
+        ];
+        let best = found.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(cost, reason)| Joint { pieces: [a, b], reason, cost })
+    });
+    let mut joints: Vec<Joint> = tried.into_iter().flatten().collect();
+    joints.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    joints
+}
+
+struct Pair<'a> {
+    scene: &'a Around<'a>,
+    view: &'a View<'a>,
+    pieces: [&'a Piece; 2],
+    border: Border,
+}
+
+impl Pair<'_> {
+    fn union(&self) -> Vec<u32> {
+        let mut points = self.pieces.map(|p| &p.points[..]).concat();
+        points.sort_unstable();
+        points
+    }
+
+    /// How badly a surface explains the worse of both.
+    fn cost(&self, fit: &Fit) -> f64 {
+        let cost = |piece: &&Piece| {
+            let distance = self.scene.typical(&piece.points, fit);
+            let most = (WORSE * piece.own).max(SLIGHT);
+            if distance > POOR { f64::INFINITY } else { distance / most }
+        };
+        self.pieces.iter().map(cost).fold(0.0, f64::max)
+    }
+
+    /// Two ends of what something nearer hides.
+    fn behind(&self, outlines: [&[u32]; 2]) -> Option<f64> {
+        if self.border.touching > APART || !self.view.hides_between(outlines[0], outlines[1]) {
+            return None;
+        }
+        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        let cost = self.cost(&fit);
+        if cost > 1.0 {
+            return None;
+        }
+        let against = self.view.contradicted(&fit, self.pieces.map(|p| &p.points[..]));
+        let cost = cost + AGAINST * against;
+        (cost < BEHIND).then_some(cost / BEHIND)
+    }
+
+    /// The inside and the outside of a thing, at whose rim the depth jumps.
+    fn hollow(&self) -> Option<f64> {
+        if self.border.beside < RIM || self.border.touching * JUMPS > self.border.beside {
+            return None;
+        }
+        let fit = self.scene.fit_hollow(&self.union(), &QUICK).ok()?;
+        let cost = self.cost(&fit);
+        let [a, b] = self.pieces.map(|p| self.view.facing(&fit, &p.points));
+        (cost < 1.0 && a.max(b) >= OUTSIDE && a.min(b) <= INSIDE).then_some(cost)
+    }
+
+    /// A piece that a dent parts from a larger one.
+    fn dent(&self) -> Option<f64> {
+        let [a, b] = self.pieces.map(|p| p.points.len());
+        if self.border.touching <= APART || a.min(b) as f64 > DENT * a.max(b) as f64 {
+            return None;
+        }
+        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        Some(self.cost(&fit)).filter(|cost| *cost < 1.0)
+    }
+}
