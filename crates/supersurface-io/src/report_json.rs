@@ -140,6 +140,8 @@ fn plane(segmentation: &Segmentation) -> Option<PlaneRow> {
 struct ObjectRow {
     id: usize,
     points: usize,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    joined: Vec<String>,
     surface: Option<SurfaceRow>,
     #[serde(flatten)]
     quality: Option<QualityRow>,
@@ -172,6 +174,7 @@ fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> O
     ObjectRow {
         id,
         points,
+        joined: object.joined.iter().map(ToString::to_string).collect(),
         surface,
         quality,
         error: fit.err().map(ToString::to_string),

@@ -2,13 +2,12 @@
 
 
 use crate::cloud::PointCloud;
-use crate::fit::{Fit, FitError, FitOptions, View, fit, free_points, outline_points};
+use crate::fit::{Fit, FitError, FitOptions};
 use crate::grasp::{Grasp, GraspOptions, Gripper, Refusal, Surroundings, plan};
 use crate::segment::{
     SegmentError, SegmentOptions, Segmentation, segment, segment_masks, segment_whole,
 };
-use crate::separate::{Around, separate};
-use crate::{Point, shape::Plane};
+use crate::separate::{Around, Reason, Thing, each, separate};
 
 /// Where the objects come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +51,8 @@ impl Default for Options {
 pub struct Object {
     /// What it is, or why its points give no surface.
     pub fit: Result<Fit, FitError>,
+    /// Why its pieces between concave edges were put together; none where it has one piece or was given.
+    pub joined: Vec<Reason>,
     /// How to hold it, best first, or why it cannot be held.
     pub grasps: Result<Vec<Grasp>, Refusal>,
 }
@@ -77,10 +78,6 @@ pub enum Stage {
     Grasp(usize),
 }
 
-/// Points of a given object lower than this above the support, in metres, say that it stands there; higher
-/// ones may lie on another object.
-const STANDING: f64 = 0.015;
-
 /// Runs all stages; `progress` is told when one begins.
 ///
 /// Without a table where one is needed this is an error: the objects of a cloud without support are not
@@ -97,66 +94,28 @@ pub fn run(
         Objects::Whole => segment_whole(cloud)?,
         Objects::Given => segment_masks(cloud, &options.segment)?,
     };
-    let count = segmentation.objects.len();
-    progress(Stage::Fit(count));
+    progress(Stage::Fit(segmentation.objects.len()));
     let around = Around { cloud, support: segmentation.support };
-    let (objects, fits): (Vec<_>, Vec<_>) = match options.objects {
-        Objects::Find => {
-            let things = separate(cloud, &segmentation, &options.fit);
-            things.into_iter().map(|thing| (thing.points, thing.fit)).unzip()
-        }
+    let given = |points: &Vec<u32>| {
+        let fit = match options.objects {
+            Objects::Whole => around.fit_alone(points, &options.fit),
+            Objects::Find | Objects::Given => around.fit(points, &options.fit),
+        };
+        Thing::given(points.clone(), fit)
+    };
+    let things = match options.objects {
+        Objects::Find => separate(cloud, &segmentation, &options.fit),
         Objects::Whole | Objects::Given => {
-            let fit = |i: usize| fit_object(cloud, &segmentation, &segmentation.objects[i], options);
-            let fits = each(count, fit);
-            (segmentation.objects.clone(), fits)
+            each(segmentation.objects.len(), |i| given(&segmentation.objects[i]))
         }
     };
-    let _ = around;
-    segmentation.objects = objects;
-    let count = segmentation.objects.len();
-    progress(Stage::Grasp(count));
+    segmentation.objects = things.iter().map(|thing| thing.points.clone()).collect();
+    progress(Stage::Grasp(things.len()));
     let around = Surroundings::new(cloud, &segmentation);
-    let grasps = each(count, |i| plan(i, fits[i].as_ref().ok(), &around, gripper, &options.grasp));
-    let objects =
-        fits.into_iter().zip(grasps).map(|(fit, grasps)| Object { fit, grasps }).collect();
+    let grasps = each(things.len(), |i| {
+        plan(i, things[i].fit.as_ref().ok(), &around, gripper, &options.grasp)
+    });
+    let object = |(thing, grasps): (Thing, _)| Object { fit: thing.fit, joined: thing.joined, grasps };
+    let objects = things.into_iter().zip(grasps).map(object).collect();
     Ok(Report { segmentation, objects })
-}
-
-fn fit_object(
-    cloud: &PointCloud,
-    segmentation: &Segmentation,
-    object: &[u32],
-    options: &Options,
-) -> Result<Fit, FitError> {
-    let points: Vec<Point> = object.iter().map(|i| cloud.points[*i as usize]).collect();
-    let free = match options.objects {
-        Objects::Whole => outline_points(cloud, object),
-        Objects::Find | Objects::Given => free_points(cloud, object),
-    };
-    let standing = segmentation.support.is_some_and(|t| lowest(&t, &points) < STANDING);
-    let view = View {
-        points: &points,
-        viewpoint: cloud.viewpoint,
-        support: segmentation.support,
-        standing,
-        free: &free,
-    };
-    fit(&view, &options.fit)
-}
-
-fn lowest(table: &Plane, points: &[Point]) -> f64 {
-    points.iter().map(|p| table.height(p)).fold(f64::INFINITY, f64::min)
-}
-
-/// The results of `work` for 0..n in order, on all cores where the feature `parallel` is on.
-fn each<T: Send>(n: usize, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        (0..n).into_par_iter().map(work).collect()
-    }
-    #[cfg(not(feature = "parallel"))]
-    {
-        (0..n).map(work).collect()
-    }
 }

@@ -13,6 +13,8 @@ use crate::segment::patches::{Patch, Patches, patches};
 
 /// Normals that differ by less than this many degrees belong to one surface.
 const TOLERANCE: f64 = 15.0;
+/// Sine of the angle under which a patch sees the other from which it does not go on in it but lies behind it.
+const STEP: f64 = 0.35;
 /// A piece of fewer patches is a crumb of its neighbour.
 const LEAST_PATCHES: usize = 3;
 /// Points that are so far apart, in metres, do not show edges.
@@ -75,7 +77,12 @@ fn is_convex(a: &Patch, b: &Patch) -> bool {
             return false;
         }
     }
-    apart.dot(&(a.normal - b.normal)) >= 0.0 || bend < TOLERANCE
+    if apart.dot(&(a.normal - b.normal)) >= 0.0 && bend >= TOLERANCE {
+        return true;
+    }
+    // one surface lies behind the other where both look the same way
+    let step = [a, b].iter().map(|p| p.normal.dot(&apart).abs()).fold(0.0, f64::max);
+    bend < TOLERANCE && step < STEP * apart.norm()
 }
 
 /// Whether voxels of twice the spacing that shows edges hold fewer than four points on the average.

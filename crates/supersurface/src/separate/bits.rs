@@ -11,7 +11,7 @@ use crate::cloud::Sets;
 const ALOFT: f64 = 0.02;
 /// Share of its neighbour's points up to which a piece is a bit of it: where it hangs, and where it does not.
 const HANGING: f64 = 0.3;
-const CRUMB: f64 = 0.06;
+const CRUMB: f64 = 0.08;
 /// Pairs of pixels from which pieces touch.
 const TOUCH: u32 = 5;
 /// An inside lies so near to the body of its outside, in metres, and faces the eye at so few of its points.

@@ -1,7 +1,7 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
 use crate::cloud::PointCloud;
-use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points};
+use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::shape::{Implicit, Plane};
 use crate::Point;
 
@@ -27,6 +27,12 @@ impl Around<'_> {
     /// The surface of the points named, seen from where the cloud was.
     pub fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
         let free = free_points(self.cloud, object);
+        self.fit_view(object, self.cloud.viewpoint, &free, options)
+    }
+
+    /// The same for a cloud that shows nothing else.
+    pub fn fit_alone(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
+        let free = outline_points(self.cloud, object);
         self.fit_view(object, self.cloud.viewpoint, &free, options)
     }
 

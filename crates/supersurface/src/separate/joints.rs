@@ -104,7 +104,12 @@ impl Pair<'_> {
 
     /// The inside and the outside of a thing, at whose rim the depth jumps.
     fn hollow(&self) -> Option<f64> {
-        if self.border.beside < RIM || self.border.touching * JUMPS > self.border.beside {
+        // in one clump, pieces that do not touch were taken for the two sides of a cup
+        let [a, b] = self.pieces;
+        let sides = a.clump == b.clump && self.border.touching <= APART;
+        if !sides
+            && (self.border.beside < RIM || self.border.touching * JUMPS > self.border.beside)
+        {
             return None;
         }
         let fit = self.scene.fit_hollow(&self.union(), &QUICK).ok()?;

@@ -66,6 +66,13 @@ pub struct Thing {
     pub joined: Vec<Reason>,
 }
 
+impl Thing {
+    /// An object whose points were given.
+    pub(crate) const fn given(points: Vec<u32>, fit: Result<Fit, FitError>) -> Self {
+        Self { points, fit, joined: Vec::new() }
+    }
+}
+
 /// A piece between concave edges.
 #[derive(Clone, Debug)]
 struct Piece {
