@@ -9,12 +9,15 @@
 //! whoever can say what a thing looks like decides.
 
 use crate::cloud::{PointCloud, Sets, VoxelGrid};
-use crate::segment::patches::{Patch, Patches, patches};
+use crate::segment::patches::{Patch, Patches, SEED, patches};
 
 /// Normals that differ by less than this many degrees belong to one surface.
 const TOLERANCE: f64 = 15.0;
-/// Sine of the angle under which a patch sees the other from which it does not go on in it but lies behind it.
-const STEP: f64 = 0.35;
+/// Spread of a patch's normals from which it may lie across an edge, and how many times its neighbour's it is then.
+const ASTRIDE: f64 = 0.04;
+const ASTRIDE_TIMES: f64 = 2.0;
+/// Height of a step between surfaces that look the same way, in distances of patches.
+const STEP: f64 = 0.1;
 /// A piece of fewer patches is a crumb of its neighbour.
 const LEAST_PATCHES: usize = 3;
 /// Points that are so far apart, in metres, do not show edges.
@@ -67,7 +70,14 @@ fn roots(patches: &Patches) -> Vec<usize> {
     }
 }
 
+/// Whether two patches go on in each other or meet at a convex edge.
 fn is_convex(a: &Patch, b: &Patch) -> bool {
+    let spread = [a, b].map(|p| 1.0 - p.evenness);
+    let (least, most) = (spread[0].min(spread[1]), spread[0].max(spread[1]));
+    // one that lies across an edge belongs to both sides of it
+    if most > ASTRIDE && most > ASTRIDE_TIMES * least {
+        return false;
+    }
     let apart = a.centre - b.centre;
     let bend = a.normal.angle(&b.normal).to_degrees();
     let crossing = a.normal.cross(&b.normal);
@@ -77,12 +87,12 @@ fn is_convex(a: &Patch, b: &Patch) -> bool {
             return false;
         }
     }
-    if apart.dot(&(a.normal - b.normal)) >= 0.0 && bend >= TOLERANCE {
-        return true;
+    if bend >= TOLERANCE {
+        return apart.dot(&(a.normal - b.normal)) >= 0.0;
     }
     // one surface lies behind the other where both look the same way
-    let step = [a, b].iter().map(|p| p.normal.dot(&apart).abs()).fold(0.0, f64::max);
-    bend < TOLERANCE && step < STEP * apart.norm()
+    let step = a.normal.dot(&apart).abs().min(b.normal.dot(&apart).abs());
+    step < SEED * (crossing.norm() + STEP)
 }
 
 /// Whether voxels of twice the spacing that shows edges hold fewer than four points on the average.

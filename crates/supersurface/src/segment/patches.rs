@@ -11,7 +11,7 @@ use crate::{Point, Vector};
 /// Side of a voxel, radius of its normal, and distance of the seeds, in metres.
 const VOXEL: f64 = 0.005;
 const NORMAL_RADIUS: f64 = 0.012;
-const SEED: f64 = 0.022;
+pub(crate) const SEED: f64 = 0.022;
 /// Voxels nearer than this are neighbours: those that share a face, an edge or a corner.
 const NEIGHBOUR: f64 = 1.75 * VOXEL;
 /// Weight of the normals against space.
@@ -24,6 +24,8 @@ const ROUNDS: usize = 3;
 pub(crate) struct Patch {
     pub(crate) centre: Point,
     pub(crate) normal: Vector,
+    /// Length of the mean of its unit normals: 1 on a plane.
+    pub(crate) evenness: f64,
     seed: usize,
 }
 
@@ -109,7 +111,7 @@ impl Voxels {
             let away = |i: &&u32| (self.at[**i as usize] - mean).norm_squared();
             let nearest = members.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
             let i = *nearest as usize;
-            Some(Patch { centre: self.at[i], normal: self.normal[i]?, seed: i })
+            Some(Patch { centre: self.at[i], normal: self.normal[i]?, evenness: 1.0, seed: i })
         };
         (0..grid.occupied()).filter_map(|c| seed(grid.members(c))).collect()
     }
@@ -161,9 +163,10 @@ impl Voxels {
             }
         }
         let mean = |(patch, (place, normal, count)): (&Patch, (Vector, Vector, f64))| {
+            let evenness = normal.norm() / count;
             let normal = normal.try_normalize(1e-9).filter(|_| count > 0.0);
             let centre = Point::from(place / count);
-            normal.map_or(*patch, |normal| Patch { centre, normal, ..*patch })
+            normal.map_or(*patch, |normal| Patch { centre, normal, evenness, ..*patch })
         };
         let mut means: Vec<Patch> = patches.iter().zip(sums).map(mean).collect();
         let mut nearest = vec![f64::INFINITY; means.len()];

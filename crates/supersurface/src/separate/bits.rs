@@ -12,10 +12,12 @@ const ALOFT: f64 = 0.02;
 /// Share of its neighbour's points up to which a piece is a bit of it: where it hangs, and where it does not.
 const HANGING: f64 = 0.3;
 const CRUMB: f64 = 0.08;
+/// Share of a hollow thing's points that a piece of its rim has at most.
+const RIM: f64 = 0.3;
 /// Pairs of pixels from which pieces touch.
 const TOUCH: u32 = 5;
 /// An inside lies so near to the body of its outside, in metres, and faces the eye at so few of its points.
-const NEAR: f64 = 0.0023;
+const NEAR: f64 = 0.0026;
 const INSIDE: f64 = 0.2;
 
 /// Joins these to the sets that they belong to, the smallest first.
@@ -83,7 +85,8 @@ fn insides(
             if sets.root(j) != sets.root(k)
                 && piece.clump == pieces[k].clump
                 && scene.typical(&piece.points, &body) < NEAR
-                && view.facing(&body, &piece.points) <= INSIDE
+                && (view.facing(&body, &piece.points) <= INSIDE
+                    || piece.points.len() as f64 <= RIM * points.len() as f64)
             {
                 sets.join(j, k);
                 reasons.push((j, Reason::Hollow));
