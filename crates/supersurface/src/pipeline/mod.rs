@@ -104,12 +104,11 @@ pub fn run(
         Thing::given(points.clone(), fit)
     };
     let things = match options.objects {
-        Objects::Find => separate(cloud, &segmentation, &options.fit),
+        Objects::Find => separate(cloud, &mut segmentation, &options.fit),
         Objects::Whole | Objects::Given => {
             each(segmentation.objects.len(), |i| given(&segmentation.objects[i]))
         }
     };
-    segmentation.objects = things.iter().map(|thing| thing.points.clone()).collect();
     progress(Stage::Grasp(things.len()));
     let around = Surroundings::new(cloud, &segmentation);
     let grasps = each(things.len(), |i| {

@@ -19,16 +19,12 @@ pub(crate) struct Image<'a> {
     eye: Point,
     /// The piece of each pixel, or `NOBODY`.
     owner: Vec<u32>,
-    /// First and last column, first and last row of the image proper, where the sensor's view ends.
-    frame: Option<[usize; 4]>,
 }
 
 /// The owner of pixels that are in no piece.
 const NOBODY: u32 = u32::MAX;
 /// Pixels without reading that are passed over under a piece.
 const SKIP: usize = 8;
-/// Cameras leave a strip without readings along the border, at most this part of the image.
-const STRIP: usize = 14;
 /// The bottom of a pot is at most this part of the image's width deep, in the image.
 const ACROSS: usize = 6;
 /// Pixels by which a piece may grow.
@@ -39,21 +35,16 @@ const SLANT: f64 = 0.4;
 const IN_FRONT: f64 = 0.008;
 
 impl<'a> Image<'a> {
-    /// The image of a cloud; `None` unless it has `width` columns in every row. `bordered` says that
-    /// the sensor's view ends at the image's border.
+    /// The image of a cloud; `None` unless it has `width` columns in every row.
     pub(crate) fn new(
         points: &'a [Point],
         class: &'a [Class],
         width: usize,
         eye: Point,
-        bordered: bool,
     ) -> Option<Self> {
         let whole = width > 0 && points.len() == class.len() && points.len().is_multiple_of(width);
         let owner = vec![NOBODY; points.len()];
-        whole.then(|| {
-            let frame = bordered.then(|| frame(class, width));
-            Self { points, class, width, eye, owner, frame }
-        })
+        whole.then_some(Self { points, class, width, eye, owner })
     }
 
     /// Says that the pixels belong to piece number `piece`.
@@ -171,21 +162,6 @@ impl<'a> Image<'a> {
         (1..=reach).map(move |k| i + k * self.width).take_while(|j| *j < self.class.len())
     }
 
-    /// How much of a piece lies along the border of the image: the diagonal of the box of its points
-    /// there, in metres.
-    pub(crate) fn cut(&self, pixels: &[u32]) -> f64 {
-        let Some([left, right, top, bottom]) = self.frame else { return 0.0 };
-        let at_border = |i: &&u32| {
-            let (u, v) = (**i as usize % self.width, **i as usize / self.width);
-            u < left + 3 || u + 3 > right || v < top + 3 || v + 3 > bottom
-        };
-        let mut points =
-            pixels.iter().filter(at_border).filter_map(|i| self.points.get(*i as usize));
-        let Some(first) = points.next() else { return 0.0 };
-        let (low, high) = points.fold((*first, *first), |(l, h), p| (l.inf(p), h.sup(p)));
-        (high - low).norm()
-    }
-
     /// True when in the rows that two pieces share, a third one that is nearer fills the space between.
     pub(crate) fn hidden_between(&self, a: &[u32], b: &[u32]) -> bool {
         let row = |i: &u32| *i as usize / self.width;
@@ -213,26 +189,4 @@ impl<'a> Image<'a> {
         }
         rows >= 5 && 5 * hidden > 4 * rows
     }
-}
-
-/// First and last column, first and last row of an image without the strip that has hardly a reading.
-fn frame(class: &[Class], width: usize) -> [usize; 4] {
-    let height = class.len() / width;
-    let (mut columns, mut rows) = (vec![0usize; width], vec![0usize; height]);
-    for (row, count) in class.chunks_exact(width).zip(&mut rows) {
-        for (c, column) in row.iter().zip(&mut columns) {
-            let seen = usize::from(*c != Class::Missing);
-            *column += seen;
-            *count += seen;
-        }
-    }
-    let ends = |counts: &[usize], full: usize| {
-        let strip = counts.len() / STRIP;
-        let seen = |c: &usize| 5 * c > full;
-        let first = counts.iter().position(seen).filter(|k| *k <= strip).unwrap_or(0);
-        let last = counts.iter().rposition(seen).filter(|k| k + strip + 1 >= counts.len());
-        [first, last.unwrap_or(counts.len() - 1)]
-    };
-    let ([left, right], [top, bottom]) = (ends(&columns, height), ends(&rows, width));
-    [left, right, top, bottom]
 }

@@ -10,6 +10,7 @@
 mod clusters;
 mod convexity;
 mod footprint;
+mod frame;
 mod image;
 mod masks;
 mod objects;
@@ -21,6 +22,7 @@ mod sight;
 mod table;
 
 pub use convexity::convex_pieces;
+pub(crate) use frame::Frame;
 pub use masks::{segment_masks, segment_whole};
 pub use table::NoTable;
 
@@ -234,10 +236,10 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         None => Raster::of(cloud, &seen, &sight, &normal, &mut random),
     };
     let (objects, dropped) = match &raster {
-        None => part(cloud, true, &support, &sight, options),
+        None => part(cloud, &support, &sight, options),
         Some(raster) => {
             let sight = Sight { pixel: Some(raster.pixel), ..sight };
-            let (mut objects, mut dropped) = part(&raster.cloud, false, &support, &sight, options);
+            let (mut objects, mut dropped) = part(&raster.cloud, &support, &sight, options);
             objects.iter_mut().for_each(|o| *o = raster.back(o));
             dropped.iter_mut().for_each(|d| d.points = raster.back(&d.points));
             (objects, dropped)
@@ -252,11 +254,9 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
     })
 }
 
-/// The objects over a support, and what was left out. `bordered` says that the sensor's view ends at the
-/// border of the cloud's grid.
+/// The objects over a support, and what was left out.
 fn part(
     cloud: &PointCloud,
-    bordered: bool,
     support: &Support,
     sight: &Sight,
     options: &SegmentOptions,
@@ -277,7 +277,7 @@ fn part(
     let class: Vec<Class> = cloud.points.iter().map(classify).collect();
     let pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
     let image = match (sight::grid(cloud), sight.eye) {
-        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye, bordered),
+        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
         _ => None,
     };
     objects::gather(&cloud.points, pieces, support, sight, image, options)

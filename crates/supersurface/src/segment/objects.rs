@@ -21,8 +21,6 @@ use crate::segment::{DropReason, Dropped, SegmentOptions};
 const EDGE: f64 = 0.01;
 /// Top of a thing, in margins, up to which it may be the support's own unevenness.
 const FLAT: f64 = 1.5;
-/// Share of its size along the border of the image from which too much of a thing may be missing.
-const CUT: f64 = 0.35;
 /// Share of curved rows from which a piece is an inside, and from which it is nothing else besides.
 const HOLLOW: f64 = 0.5;
 const ALL_HOLLOW: f64 = 0.78;
@@ -31,6 +29,8 @@ const MOST: usize = 300;
 /// Size under which, and height of the foot over which, nothing hangs in the air, in metres: larger and
 /// lower things may have a foot that was not seen.
 const SMALL: f64 = 0.1;
+/// Part of a thing's height that may be hidden over what carries it, in metres.
+const FOOT: f64 = 0.04;
 const HIGH: f64 = 0.15;
 
 /// The objects among `pieces`, in the order of their first points, and what is none.
@@ -82,9 +82,12 @@ pub(crate) fn gather(
         pieces[j] = Some(whole);
     }
     let mut objects = Vec::new();
-    for (piece, fault) in pieces.into_iter().zip(faults) {
+    let carried = |piece: &Piece| pieces.iter().flatten().any(|other| carries(other, piece));
+    let carried: Vec<bool> =
+        pieces.iter().map(|piece| piece.as_ref().is_some_and(carried)).collect();
+    for ((piece, fault), carried) in pieces.into_iter().zip(faults).zip(carried) {
         let Some(piece) = piece else { continue };
-        match fault.or_else(|| slight(&piece, support, sight, image.as_ref(), options)) {
+        match fault.or_else(|| slight(&piece, support, sight, image.as_ref(), carried, options)) {
             None => {
                 let mut points = piece.points;
                 image.iter_mut().for_each(|image| image.grow(&mut points));
@@ -193,6 +196,14 @@ fn in_line(piece: &Piece, other: &Piece, ground: &Ground) -> bool {
     (s[0] - t[0]).abs() < slack && (s[1] - t[1]).abs() < slack
 }
 
+/// Whether a piece may stand on another: that reaches as high as its foot, and lies under it.
+fn carries(lower: &Piece, upper: &Piece) -> bool {
+    lower.bottom < upper.bottom
+        && lower.top > upper.bottom - FOOT
+        && lower.top < upper.top
+        && upper.within(lower) > 0.1
+}
+
 /// Why a piece cannot be an object, by its place and size; `None` when it can.
 fn misplaced(
     piece: &Piece,
@@ -214,6 +225,7 @@ fn slight(
     support: &Support,
     sight: &Sight,
     image: Option<&Image<'_>>,
+    carried: bool,
     options: &SegmentOptions,
 ) -> Option<DropReason> {
     if piece.points.len() < options.least_points || piece.size() < options.least_size {
@@ -223,10 +235,7 @@ fn slight(
     if middle.is_some_and(|p| piece.top < FLAT * support.margin(p, sight, options)) {
         return Some(DropReason::Flat);
     }
-    if image.is_some_and(|i| i.cut(&piece.points) > CUT * piece.size()) {
-        return Some(DropReason::CutOff);
-    }
-    let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH);
+    let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH) && !carried;
     let up = support.plane.normal();
     let hangs = aloft && image.is_some_and(|i| i.hangs(&piece.points, &up));
     hangs.then_some(DropReason::Hanging)

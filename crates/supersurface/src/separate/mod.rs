@@ -19,7 +19,7 @@ pub use bodies::Around;
 
 use crate::cloud::{PointCloud, Sets};
 use crate::fit::{Fit, FitError, FitOptions};
-use crate::segment::Segmentation;
+use crate::segment::{DropReason, Dropped, Frame, Segmentation};
 use clump::clumped;
 use view::View;
 
@@ -86,10 +86,11 @@ struct Piece {
     joined: Vec<Reason>,
 }
 
-/// The objects that the clumps of a segmentation consist of, in the order of their first points.
+/// The objects that the clumps of a segmentation consist of, in the order of their first points; the segmentation's objects
+/// become these. What the border of the image cuts off is left out.
 pub fn separate(
     cloud: &PointCloud,
-    segmentation: &Segmentation,
+    segmentation: &mut Segmentation,
     options: &FitOptions,
 ) -> Vec<Thing> {
     let image = segmentation.image();
@@ -121,6 +122,14 @@ pub fn separate(
         Thing { fit: around.fit(&points, options), points, joined }
     });
     things.sort_by_key(|thing| thing.points.first().copied());
+    if let Some(frame) = Frame::of(cloud) {
+        let (cut, whole) = things.into_iter().partition(|thing| frame.cuts(&thing.points));
+        things = whole;
+        let cut: Vec<Thing> = cut;
+        let dropped = |thing: Thing| Dropped { points: thing.points, reason: DropReason::CutOff };
+        segmentation.dropped.extend(cut.into_iter().map(dropped));
+    }
+    segmentation.objects = things.iter().map(|thing| thing.points.clone()).collect();
     things
 }
 
