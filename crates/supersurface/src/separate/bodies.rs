@@ -1,15 +1,21 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
+use nalgebra::{Matrix3, SymmetricEigen};
+
 use crate::cloud::PointCloud;
 use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::shape::{Implicit, Plane};
-use crate::Point;
+use crate::{Point, Vector};
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
 /// another object.
 const STANDING: f64 = 0.015;
 /// Points at which a surface is compared with what it should explain.
 const SOME: usize = 200;
+
+/// Deviation of points in a plane, in metres, and the cosine to the support's normal of one that is level.
+const FLAT: f64 = 0.0025;
+const LEVEL: f64 = 0.94;
 
 /// How pieces are fitted.
 pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
@@ -61,6 +67,20 @@ impl Around<'_> {
         let mut heights: Vec<f64> = points.iter().map(height).collect();
         let cut = heights.len() / 50;
         *heights.select_nth_unstable_by(cut, f64::total_cmp).1
+    }
+
+    /// True for points that lie in a plane which is level.
+    pub(super) fn is_level(&self, points: &[u32]) -> bool {
+        let Some(support) = self.support else { return false };
+        let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
+        let some: Vec<Vector> = some.map(|i| self.cloud.points[*i as usize].coords).collect();
+        let mean = some.iter().sum::<Vector>() / some.len().max(1) as f64;
+        let scatter: Matrix3<f64> = some.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
+        let eigen = SymmetricEigen::new(scatter / some.len().max(1) as f64);
+        let least = eigen.eigenvalues.imin();
+        let normal = eigen.eigenvectors.column(least);
+        eigen.eigenvalues[least].max(0.0).sqrt() < FLAT
+            && normal.dot(&support.normal()).abs() > LEVEL
     }
 
     /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points from a surface, in metres.

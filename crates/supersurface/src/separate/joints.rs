@@ -63,6 +63,17 @@ pub(super) fn joints(
     joints
 }
 
+/// True where one surface explains all of more than two pieces.
+pub(super) fn is_one(scene: &Around<'_>, pieces: &[&Piece], hollow: bool) -> bool {
+    if pieces.len() < 3 {
+        return true;
+    }
+    let mut points: Vec<u32> = pieces.iter().flat_map(|p| &p.points).copied().collect();
+    points.sort_unstable();
+    let fit = if hollow { scene.fit_hollow(&points, &QUICK) } else { scene.fit(&points, &QUICK) };
+    fit.is_ok_and(|fit| pieces.iter().all(|p| scene.typical(&p.points, &fit) < POOR))
+}
+
 struct Pair<'a> {
     scene: &'a Around<'a>,
     view: &'a View<'a>,
@@ -115,7 +126,10 @@ impl Pair<'_> {
         let fit = self.scene.fit_hollow(&self.union(), &QUICK).ok()?;
         let cost = self.cost(&fit);
         let [a, b] = self.pieces.map(|p| self.view.facing(&fit, &p.points));
-        (cost < 1.0 && a.max(b) >= OUTSIDE && a.min(b) <= INSIDE).then_some(cost)
+        let inside = self.pieces[usize::from(b < a)];
+        let seen = a.max(b) >= OUTSIDE && a.min(b) <= INSIDE;
+        // the level top of something behind looks like an inside
+        (cost < 1.0 && seen && !self.scene.is_level(&inside.points)).then_some(cost)
     }
 
     /// A piece that a dent parts from a larger one.

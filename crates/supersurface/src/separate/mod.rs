@@ -139,8 +139,16 @@ fn grouped(scene: &Around<'_>, view: &View<'_>, pieces: &[Piece]) -> Vec<(Vec<us
     let mut sets = Sets::new(pieces.len());
     let mut reasons: Vec<(usize, Reason)> = Vec::new();
     for joint in joints::joints(scene, view, pieces, &borders) {
-        sets.join(joint.pieces[0], joint.pieces[1]);
-        reasons.push((joint.pieces[0], joint.reason));
+        let [a, b] = joint.pieces.map(|k| sets.root(k));
+        let in_both = |k: usize, sets: &mut Sets| [a, b].contains(&sets.root(k));
+        let all: Vec<&Piece> =
+            (0..pieces.len()).filter(|k| in_both(*k, &mut sets)).map(|k| &pieces[k]).collect();
+        let hollow = joint.reason == Reason::Hollow
+            || reasons.iter().any(|(k, r)| *r == Reason::Hollow && in_both(*k, &mut sets));
+        if a != b && joints::is_one(scene, &all, hollow) {
+            sets.join(a, b);
+            reasons.push((a, joint.reason));
+        }
     }
     bits::hang_on(scene, view, pieces, &borders, &mut sets, &mut reasons);
     let mut groups: BTreeMap<usize, (Vec<usize>, Vec<Reason>)> = BTreeMap::new();
