@@ -1,21 +1,15 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
-use nalgebra::{Matrix3, SymmetricEigen};
-
 use crate::cloud::PointCloud;
 use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::shape::{Implicit, Plane};
-use crate::{Point, Vector};
+use crate::Point;
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
 /// another object.
 const STANDING: f64 = 0.015;
 /// Points at which a surface is compared with what it should explain.
 const SOME: usize = 200;
-
-/// Deviation of points in a plane, in metres, and the cosine to the support's normal of one that is level.
-const FLAT: f64 = 0.0025;
-const LEVEL: f64 = 0.94;
 
 /// How pieces are fitted.
 pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
@@ -60,27 +54,14 @@ impl Around<'_> {
         fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
     }
 
-    /// Height of the lowest points over the support without the last 2 %, in metres; 0 without a support.
-    pub(super) fn lowest(&self, points: &[u32]) -> f64 {
-        let Some(support) = self.support.filter(|_| !points.is_empty()) else { return 0.0 };
+    /// Heights of the lowest and the highest points over the support without the last 2 %, in metres; 0 without a support.
+    pub(super) fn heights(&self, points: &[u32]) -> [f64; 2] {
+        let Some(support) = self.support.filter(|_| !points.is_empty()) else { return [0.0; 2] };
         let height = |i: &u32| support.height(&self.cloud.points[*i as usize]);
         let mut heights: Vec<f64> = points.iter().map(height).collect();
         let cut = heights.len() / 50;
-        *heights.select_nth_unstable_by(cut, f64::total_cmp).1
-    }
-
-    /// True for points that lie in a plane which is level.
-    pub(super) fn is_level(&self, points: &[u32]) -> bool {
-        let Some(support) = self.support else { return false };
-        let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
-        let some: Vec<Vector> = some.map(|i| self.cloud.points[*i as usize].coords).collect();
-        let mean = some.iter().sum::<Vector>() / some.len().max(1) as f64;
-        let scatter: Matrix3<f64> = some.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
-        let eigen = SymmetricEigen::new(scatter / some.len().max(1) as f64);
-        let least = eigen.eigenvalues.imin();
-        let normal = eigen.eigenvectors.column(least);
-        eigen.eigenvalues[least].max(0.0).sqrt() < FLAT
-            && normal.dot(&support.normal()).abs() > LEVEL
+        [cut, heights.len() - 1 - cut]
+            .map(|k| *heights.select_nth_unstable_by(k, f64::total_cmp).1)
     }
 
     /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points from a surface, in metres.

@@ -35,6 +35,8 @@ const OUTSIDE: f64 = 0.8;
 const INSIDE: f64 = 0.2;
 /// Share of the larger piece's points up to which the smaller may be due to a dent.
 const DENT: f64 = 0.3;
+/// What a surface over a dent may cost.
+const SHALLOW: f64 = 0.8;
 
 /// All pairs that hold, the best first.
 pub(super) fn joints(
@@ -126,10 +128,10 @@ impl Pair<'_> {
         let fit = self.scene.fit_hollow(&self.union(), &QUICK).ok()?;
         let cost = self.cost(&fit);
         let [a, b] = self.pieces.map(|p| self.view.facing(&fit, &p.points));
-        let inside = self.pieces[usize::from(b < a)];
+        let [inside, outside] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };
         let seen = a.max(b) >= OUTSIDE && a.min(b) <= INSIDE;
-        // the level top of something behind looks like an inside
-        (cost < 1.0 && seen && !self.scene.is_level(&inside.points)).then_some(cost)
+        let mouth = || self.scene.support.is_some_and(|s| self.view.over_rim(&fit, &inside.points, &s, outside.top));
+        (cost < 1.0 && seen && mouth()).then_some(cost)
     }
 
     /// A piece that a dent parts from a larger one.
@@ -139,6 +141,6 @@ impl Pair<'_> {
             return None;
         }
         let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
-        Some(self.cost(&fit)).filter(|cost| *cost < 1.0)
+        Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
     }
 }

@@ -83,6 +83,8 @@ struct Piece {
     own: f64,
     /// Height of its lowest points over the support, in metres.
     low: f64,
+    /// The same of its highest.
+    top: f64,
     joined: Vec<Reason>,
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::cloud::PointCloud;
 use crate::fit::Fit;
 use crate::measure::first_hit;
-use crate::shape::{Implicit, Ray};
+use crate::shape::{Implicit, Plane, Ray};
 use crate::{Direction, Point, Vector};
 
 /// An organised cloud whose pixels belong to pieces.
@@ -37,6 +37,9 @@ const BEFORE: f64 = 0.012;
 /// Lines of sight by which a surface is tried.
 const TRIED: usize = 300;
 
+/// Depth under the top of a wall, in metres, to which its rim may be cut off, and lines of sight over it that are looked at.
+const RIM: f64 = 0.012;
+const LOOKED: usize = 60;
 /// Pixels without reading that are passed over under a piece.
 const SKIP: usize = 8;
 /// Way behind per way down from which the view is too oblique to miss a side: 22 degrees off the vertical.
@@ -172,6 +175,23 @@ impl<'a> View<'a> {
             }
         }
         if met > 0.0 { before / met } else { 0.0 }
+    }
+
+    /// True where most lines of sight to some points enter a body over the top of its near wall, as they do through the mouth
+    /// of a cup: the top of something behind looks like an inside too, but would be seen through that wall.
+    pub(super) fn over_rim(&self, fit: &Fit, points: &[u32], support: &Plane, top: f64) -> bool {
+        let local = fit.surface.pose().inverse();
+        let (mut entered, mut at_top) = (0, 0);
+        for i in points.iter().step_by(points.len().div_ceil(LOOKED).max(1)) {
+            let way = local * (self.points[*i as usize] - self.eye);
+            let Some(direction) = Direction::try_new(way, 1e-9) else { continue };
+            let ray = Ray { origin: local * self.eye, direction };
+            if let Some(hit) = first_hit(fit.surface.shape(), &ray, 1e3) {
+                entered += 1;
+                at_top += usize::from(support.height(&(fit.surface.pose() * hit.point)) > top - RIM);
+            }
+        }
+        entered > 0 && 10 * at_top > 7 * entered
     }
 
     /// Share of some points at which a surface faces the eye.
