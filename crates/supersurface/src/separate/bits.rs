@@ -55,7 +55,7 @@ pub(super) fn hang_on(
         };
         let own_root = sets.root(k);
         let share = size(own_root, sets) / size(root, sets);
-        let hangs = || pieces[k].low > ALOFT && view.hangs(&pieces[k].points, &up);
+        let hangs = || pieces[k].heights[0] > ALOFT && view.hangs(&pieces[k].points, &up);
         if pairs >= TOUCH && (share < CRUMB || share < HANGING && hangs()) {
             sets.join(root, k);
             reasons.push((k, if share < CRUMB { Reason::Sliver } else { Reason::Hanging }));

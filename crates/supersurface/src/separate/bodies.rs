@@ -54,13 +54,14 @@ impl Around<'_> {
         fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
     }
 
-    /// Heights of the lowest and the highest points over the support without the last 2 %, in metres; 0 without a support.
-    pub(super) fn heights(&self, points: &[u32]) -> [f64; 2] {
-        let Some(support) = self.support.filter(|_| !points.is_empty()) else { return [0.0; 2] };
+    /// Heights of the lowest, the middle and the highest points over the support without the last 2 %, in metres; 0 without a
+    /// support.
+    pub(super) fn heights(&self, points: &[u32]) -> [f64; 3] {
+        let Some(support) = self.support.filter(|_| !points.is_empty()) else { return [0.0; 3] };
         let height = |i: &u32| support.height(&self.cloud.points[*i as usize]);
         let mut heights: Vec<f64> = points.iter().map(height).collect();
         let cut = heights.len() / 50;
-        [cut, heights.len() - 1 - cut]
+        [cut, heights.len() / 2, heights.len() - 1 - cut]
             .map(|k| *heights.select_nth_unstable_by(k, f64::total_cmp).1)
     }
 

@@ -24,8 +24,8 @@ const HANDLE: f64 = 0.2;
 /// The pieces of clump number `clump`; one where there is nothing to cut.
 pub(super) fn clumped(scene: &Around<'_>, clump: usize, points: &[u32]) -> Vec<Piece> {
     let piece = |points: Vec<u32>, own: f64, joined: Vec<Reason>| {
-        let [low, top] = scene.heights(&points);
-        Piece { points, clump, own, low, top, joined }
+        let heights = scene.heights(&points);
+        Piece { points, clump, own, heights, joined }
     };
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);

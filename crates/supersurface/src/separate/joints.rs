@@ -33,6 +33,8 @@ const JUMPS: u32 = 4;
 /// Shares of points at which the surface faces the eye on the outside and on the inside.
 const OUTSIDE: f64 = 0.8;
 const INSIDE: f64 = 0.2;
+/// A piece half of which lies in this highest share of its height is the top of something, not an inside.
+const LEVEL: f64 = 0.2;
 /// Share of the larger piece's points up to which the smaller may be due to a dent.
 const DENT: f64 = 0.3;
 /// What a surface over a dent may cost.
@@ -130,8 +132,11 @@ impl Pair<'_> {
         let [a, b] = self.pieces.map(|p| self.view.facing(&fit, &p.points));
         let [inside, outside] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };
         let seen = a.max(b) >= OUTSIDE && a.min(b) <= INSIDE;
-        let mouth = || self.scene.support.is_some_and(|s| self.view.over_rim(&fit, &inside.points, &s, outside.top));
-        (cost < 1.0 && seen && mouth()).then_some(cost)
+        let [low, middle, high] = inside.heights;
+        let is_level = high - middle < LEVEL * (high - low);
+        let over_rim = |s| self.view.over_rim(&fit, &inside.points, &s, outside.heights[2]);
+        let holds = cost < 1.0 && seen && !is_level && self.scene.support.is_some_and(over_rim);
+        holds.then_some(cost)
     }
 
     /// A piece that a dent parts from a larger one.

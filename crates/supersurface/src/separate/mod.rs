@@ -81,10 +81,8 @@ struct Piece {
     clump: usize,
     /// Median distance of its points from their own surface, in metres.
     own: f64,
-    /// Height of its lowest points over the support, in metres.
-    low: f64,
-    /// The same of its highest.
-    top: f64,
+    /// Heights of its lowest, middle and highest points over the support, in metres.
+    heights: [f64; 3],
     joined: Vec<Reason>,
 }
 
