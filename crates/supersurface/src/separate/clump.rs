@@ -11,6 +11,8 @@ const LEAST: usize = 150;
 const SLIVER: f64 = 0.02;
 /// Distance from the surface that a sliver joins, in metres.
 const BESIDE: f64 = 0.006;
+/// Pieces from which a clump is no single body.
+const MANY: usize = 12;
 /// How much worse than a piece's own surface that of the whole clump may explain it, and up to which distance in metres
 /// that does not matter.
 const WORSE: f64 = 1.3;
@@ -21,58 +23,54 @@ const HOLLOW_WORSE: f64 = 1.8;
 const HOLLOW_SLIGHT: f64 = 0.0023;
 const HANDLE: f64 = 0.2;
 
-/// The pieces of clump number `clump`; one where there is nothing to cut.
-pub(super) fn clumped(scene: &Around<'_>, clump: usize, points: &[u32]) -> Vec<Piece> {
-    let piece = |points: Vec<u32>, own: f64, joined: Vec<Reason>| {
-        let heights = scene.heights(&points);
-        Piece { points, clump, own, heights, joined }
-    };
+/// The pieces of clump number `clump`; one where there is nothing to cut, fitted as its object will be.
+pub(super) fn clumped(
+    scene: &Around<'_>,
+    clump: usize,
+    points: &[u32],
+    options: &FitOptions,
+) -> Vec<Piece> {
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
     let (large, slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
-    let own = |points: &[u32]| {
-        let fit = scene.fit(points, &QUICK).ok();
-        (fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(points, f)), fit)
+    let whole = |joined: Option<Reason>| {
+        let piece = Piece::new(scene, clump, points.to_vec(), options);
+        vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
     };
     if large.len() < 2 {
-        let joined = if slivers.is_empty() { Vec::new() } else { vec![Reason::Sliver] };
-        return vec![piece(points.to_vec(), own(points).0, joined)];
+        return whole((!slivers.is_empty()).then_some(Reason::Sliver));
     }
-    let mut parts: Vec<(Vec<u32>, f64, Option<Fit>, bool)> = large
-        .into_iter()
-        .map(|points| {
-            let (own, fit) = own(&points);
-            (points, own, fit, false)
-        })
-        .collect();
-    if let Ok(whole) = scene.fit(points, &FitOptions::UNDEFORMED.quick()) {
-        let unexplained = |worse: f64, slight: f64| {
-            let poorly = parts
-                .iter()
-                .filter(|(p, own, ..)| scene.typical(p, &whole) > (worse * own).max(slight));
-            poorly.map(|(p, ..)| p.len()).sum::<usize>()
-        };
-        let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
-        let handle = (HANDLE * points.len() as f64) as usize;
-        if unexplained(WORSE, SLIGHT) == 0
-            || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < handle
-        {
-            return vec![piece(points.to_vec(), scene.typical(points, &whole), vec![Reason::Whole])];
+    let mut parts: Vec<Piece> =
+        large.into_iter().map(|points| Piece::new(scene, clump, points, &QUICK)).collect();
+    if parts.len() < MANY {
+        let all = whole(Some(Reason::Whole));
+        if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
+            return all;
         }
     }
     for sliver in slivers {
-        let distance = |fit: &Option<Fit>| {
-            fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(&sliver, f))
-        };
-        let nearest = parts.iter_mut().map(|p| (distance(&p.2), p));
-        if let Some((distance, (points, _, _, joined))) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))
+        let distance =
+            |part: &Piece| part.fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(&sliver, f));
+        let nearest = parts.iter_mut().map(|part| (distance(part), part));
+        if let Some((distance, part)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))
             && distance < BESIDE
         {
-            points.extend(sliver);
-            points.sort_unstable();
-            *joined = true;
+            part.points.extend(sliver);
+            part.points.sort_unstable();
+            part.joined = vec![Reason::Sliver];
         }
     }
-    let reasons = |joined: bool| if joined { vec![Reason::Sliver] } else { Vec::new() };
-    parts.into_iter().map(|(points, own, _, joined)| piece(points, own, reasons(joined))).collect()
+    parts
+}
+
+/// Whether one body explains all parts of a clump.
+fn explains(scene: &Around<'_>, whole: &Fit, parts: &[Piece]) -> bool {
+    let unexplained = |worse: f64, slight: f64| {
+        let poorly = |p: &&Piece| scene.typical(&p.points, whole) > (worse * p.own).max(slight);
+        parts.iter().filter(poorly).map(|p| p.points.len()).sum::<usize>() as f64
+    };
+    let all = parts.iter().map(|p| p.points.len()).sum::<usize>() as f64;
+    let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
+    unexplained(WORSE, SLIGHT) == 0.0
+        || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * all
 }

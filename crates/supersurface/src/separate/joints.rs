@@ -33,10 +33,15 @@ const JUMPS: u32 = 4;
 /// Shares of points at which the surface faces the eye on the outside and on the inside.
 const OUTSIDE: f64 = 0.8;
 const INSIDE: f64 = 0.2;
+/// Difference in height, in metres and as a share, up to which two pieces reach one rim.
+const UNEVEN: f64 = 0.02;
+const UNEVEN_SHARE: f64 = 0.15;
 /// A piece half of which lies in this highest share of its height is the top of something, not an inside.
 const LEVEL: f64 = 0.2;
 /// Share of the larger piece's points up to which the smaller may be due to a dent.
 const DENT: f64 = 0.3;
+/// Distance of a piece from a larger one's surface, in metres, up to which both may be one.
+const ON: f64 = 0.008;
 /// What a surface over a dent may cost.
 const SHALLOW: f64 = 0.8;
 
@@ -119,6 +124,11 @@ impl Pair<'_> {
 
     /// The inside and the outside of a thing, at whose rim the depth jumps.
     fn hollow(&self) -> Option<f64> {
+        // both reach the rim
+        let [a, b] = self.pieces.map(|p| p.heights[2]);
+        if (a - b).abs() > UNEVEN + UNEVEN_SHARE * a.max(b) {
+            return None;
+        }
         // in one clump, pieces that do not touch were taken for the two sides of a cup
         let [a, b] = self.pieces;
         let sides = a.clump == b.clump && self.border.touching <= APART;
@@ -143,6 +153,12 @@ impl Pair<'_> {
     fn dent(&self) -> Option<f64> {
         let [a, b] = self.pieces.map(|p| p.points.len());
         if self.border.touching <= APART || a.min(b) as f64 > DENT * a.max(b) as f64 {
+            return None;
+        }
+        // the larger goes on about where the smaller is
+        let [small, large] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };
+        let on = large.fit.as_ref().is_ok_and(|f| self.scene.typical(&small.points, f) < ON);
+        if !on {
             return None;
         }
         let fit = self.scene.fit(&self.union(), &QUICK).ok()?;

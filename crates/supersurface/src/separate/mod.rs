@@ -79,11 +79,23 @@ struct Piece {
     points: Vec<u32>,
     /// The clump that it was cut from.
     clump: usize,
+    fit: Result<Fit, FitError>,
+    /// True where it was fitted as objects are.
+    fitted: bool,
     /// Median distance of its points from their own surface, in metres.
     own: f64,
     /// Heights of its lowest, middle and highest points over the support, in metres.
     heights: [f64; 3],
     joined: Vec<Reason>,
+}
+
+impl Piece {
+    fn new(scene: &Around<'_>, clump: usize, points: Vec<u32>, options: &FitOptions) -> Self {
+        let fit = scene.fit(&points, options);
+        let own = fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(&points, f));
+        let heights = scene.heights(&points);
+        Self { points, clump, fit, fitted: false, own, heights, joined: Vec::new() }
+    }
 }
 
 /// The objects that the clumps of a segmentation consist of, in the order of their first points; the segmentation's objects
@@ -98,8 +110,8 @@ pub fn separate(
     let clumps = each(segmentation.objects.len(), |k| {
         let points = &segmentation.objects[k];
         match image {
-            Some(image) => clumped(&scene, k, &image.pixels(points)),
-            None => clumped(&scene, k, points),
+            Some(image) => clumped(&scene, k, &image.pixels(points), options),
+            None => clumped(&scene, k, points, options),
         }
     });
     let pieces: Vec<Piece> = clumps.into_iter().flatten().collect();
@@ -119,7 +131,11 @@ pub fn separate(
         let mut joined: Vec<Reason> = own.flat_map(|p| &p.joined).chain(reasons).copied().collect();
         joined.sort_unstable();
         joined.dedup();
-        Thing { fit: around.fit(&points, options), points, joined }
+        let fit = match (&members[..], image) {
+            ([k], None) if pieces[*k].fitted => pieces[*k].fit.clone(),
+            _ => around.fit(&points, options),
+        };
+        Thing { fit, points, joined }
     });
     things.sort_by_key(|thing| thing.points.first().copied());
     if let Some(frame) = Frame::of(cloud) {
