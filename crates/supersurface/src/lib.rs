@@ -14,7 +14,8 @@
 //! | 6 | [`combine`] | Boolean trees of solids; parts joined to an assembly |
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
 //! | 6 | [`mesh`] | watertight triangle meshes; points spread evenly on curves and surfaces |
-//! | 7 | [`segment`], [`fit`] | table plane and objects; one supersurface per object |
+//! | 7 | [`segment`], [`fit`] | table plane and what stands on it; one supersurface per object |
+//! | 8 | [`separate`] | things that touch told apart, pieces of one thing put together |
 //! | 8 | [`grasp`], [`scene`] | ranked grasps; scenes seen by a simulated depth camera |
 //! | 9 | [`pipeline`], [`picture`] | cloud to grasps in one call; pixels on the CPU |
 //!

@@ -1,6 +1,5 @@
 //! Floor 9: cloud to table to objects to surfaces to grasps, with one options struct and one report.
 
-
 use crate::cloud::PointCloud;
 use crate::fit::{Fit, FitError, FitOptions};
 use crate::grasp::{Grasp, GraspOptions, Gripper, Refusal, Surroundings, plan};
@@ -114,7 +113,8 @@ pub fn run(
     let grasps = each(things.len(), |i| {
         plan(i, things[i].fit.as_ref().ok(), &around, gripper, &options.grasp)
     });
-    let object = |(thing, grasps): (Thing, _)| Object { fit: thing.fit, joined: thing.joined, grasps };
+    let object =
+        |(thing, grasps): (Thing, _)| Object { fit: thing.fit, joined: thing.joined, grasps };
     let objects = things.into_iter().zip(grasps).map(object).collect();
     Ok(Report { segmentation, objects })
 }

@@ -39,7 +39,8 @@ impl<'a> Frame<'a> {
     pub(crate) fn cuts(&self, pixels: &[u32]) -> bool {
         let at_border = |i: &&u32| {
             let at = [**i as usize % self.width, **i as usize / self.width];
-            let near = |(x, [first, last]): (usize, [usize; 2])| x < first + NEAR || x + NEAR > last;
+            let near =
+                |(x, [first, last]): (usize, [usize; 2])| x < first + NEAR || x + NEAR > last;
             at.into_iter().zip(self.ends).any(near)
         };
         let some = pixels.iter().step_by(pixels.len().div_ceil(2000).max(1));

@@ -43,7 +43,8 @@ pub(super) fn hang_on(
                 *touching.entry(root).or_default() += border.touching;
             }
         }
-        let Some((root, pairs)) = touching.into_iter().max_by_key(|(root, n)| (*n, pieces.len() - root))
+        let Some((root, pairs)) =
+            touching.into_iter().max_by_key(|(root, n)| (*n, pieces.len() - root))
         else {
             continue;
         };
@@ -76,8 +77,7 @@ fn insides(
     for k in hollow {
         let root = sets.root(k);
         let members = (0..pieces.len()).filter(|j| sets.root(*j) == root);
-        let mut points: Vec<u32> =
-            members.flat_map(|j| &pieces[j].points).copied().collect();
+        let mut points: Vec<u32> = members.flat_map(|j| &pieces[j].points).copied().collect();
         points.sort_unstable();
         let Ok(body) = scene.fit_hollow(&points, &QUICK) else { continue };
         for j in 0..pieces.len() {

@@ -1,9 +1,9 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
+use crate::Point;
 use crate::cloud::PointCloud;
 use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::shape::{Implicit, Plane};
-use crate::Point;
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
 /// another object.

@@ -132,8 +132,7 @@ impl Pair<'_> {
         // in one clump, pieces that do not touch were taken for the two sides of a cup
         let [a, b] = self.pieces;
         let sides = a.clump == b.clump && self.border.touching <= APART;
-        if !sides
-            && (self.border.beside < RIM || self.border.touching * JUMPS > self.border.beside)
+        if !sides && (self.border.beside < RIM || self.border.touching * JUMPS > self.border.beside)
         {
             return None;
         }

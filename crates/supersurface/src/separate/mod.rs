@@ -150,7 +150,11 @@ pub fn separate(
 }
 
 /// The pieces that are one object, and why.
-fn grouped(scene: &Around<'_>, view: &View<'_>, pieces: &[Piece]) -> Vec<(Vec<usize>, Vec<Reason>)> {
+fn grouped(
+    scene: &Around<'_>,
+    view: &View<'_>,
+    pieces: &[Piece],
+) -> Vec<(Vec<usize>, Vec<Reason>)> {
     let borders = view.borders();
     let mut sets = Sets::new(pieces.len());
     let mut reasons: Vec<(usize, Reason)> = Vec::new();

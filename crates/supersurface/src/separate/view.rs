@@ -88,7 +88,8 @@ impl<'a> View<'a> {
                     let pair = [*own.min(&other) as usize, *own.max(&other) as usize];
                     let border = out.entry(pair).or_default();
                     border.beside += 1;
-                    border.touching += u32::from((self.points[i] - self.points[j]).norm() < CONTACT);
+                    border.touching +=
+                        u32::from((self.points[i] - self.points[j]).norm() < CONTACT);
                 }
             }
         }
@@ -164,10 +165,15 @@ impl<'a> View<'a> {
             for u in (low[0]..=high[0]).step_by(step) {
                 let i = v * self.width + u;
                 let own = self.owner[i] != NOBODY && {
-                    let inside = |p: &[u32]| p.first().is_some_and(|f| self.owner[*f as usize] == self.owner[i]);
+                    let inside = |p: &[u32]| {
+                        p.first().is_some_and(|f| self.owner[*f as usize] == self.owner[i])
+                    };
                     pieces.iter().any(|p| inside(p))
                 };
-                let Some(way) = Direction::try_new(local * (self.points[i] - self.eye), 1e-9) else { continue };
+                let Some(way) = Direction::try_new(local * (self.points[i] - self.eye), 1e-9)
+                else {
+                    continue;
+                };
                 let ray = Ray { origin, direction: way };
                 let Some(hit) = first_hit(fit.surface.shape(), &ray, 1e3) else { continue };
                 met += 1.0;
@@ -188,7 +194,8 @@ impl<'a> View<'a> {
             let ray = Ray { origin: local * self.eye, direction };
             if let Some(hit) = first_hit(fit.surface.shape(), &ray, 1e3) {
                 entered += 1;
-                at_top += usize::from(support.height(&(fit.surface.pose() * hit.point)) > top - RIM);
+                at_top +=
+                    usize::from(support.height(&(fit.surface.pose() * hit.point)) > top - RIM);
             }
         }
         entered > 0 && 10 * at_top > 7 * entered
@@ -211,7 +218,8 @@ impl<'a> View<'a> {
         piece.iter().for_each(|i| lowest[*i as usize % self.width] = *i);
         let (mut columns, mut free) = (0, 0);
         for i in lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize) {
-            let under = (1..=SKIP).map(|k| i + k * self.width).take_while(|j| *j < self.points.len());
+            let under =
+                (1..=SKIP).map(|k| i + k * self.width).take_while(|j| *j < self.points.len());
             let Some(j) = under.into_iter().find(|j| self.range(*j).is_finite()) else { continue };
             columns += 1;
             let step = self.points[j] - self.points[i];

@@ -18,6 +18,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("fit", 7),
     ("grasp", 8),
     ("scene", 8),
+    ("separate", 8),
     ("pipeline", 9),
     ("picture", 9),
 ];
