@@ -1,5 +1,6 @@
 //! Integration tests of the readers and writers, one binary.
 
+mod crowded;
 mod faults;
 mod formats;
 mod grippers;

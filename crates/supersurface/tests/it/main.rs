@@ -22,3 +22,4 @@ mod picture;
 mod pipeline;
 mod scene;
 mod segment;
+mod separate;
