@@ -5,6 +5,7 @@ use std::fmt::Write;
 use supersurface::grasp::Grasp;
 use supersurface::pipeline::{Object, Report};
 use supersurface::segment::Segmentation;
+use supersurface::separate::Reason;
 
 /// The whole text: the support, a row an object, its best `most_grasps` grasps, and what was left out.
 pub(crate) fn table(report: &Report, most_grasps: usize) -> String {
@@ -22,6 +23,7 @@ pub(crate) fn table(report: &Report, most_grasps: usize) -> String {
     }
     for (i, object) in report.objects.iter().enumerate() {
         row(&mut out, i + 1, object);
+        joined(&mut out, object);
         grasps(&mut out, object, most_grasps);
     }
     dropped(&mut out, s);
@@ -69,6 +71,15 @@ fn row(out: &mut String, id: usize, object: &Object) {
         1e3 * fit.residual,
         1e2 * fit.inlier_share(),
     );
+}
+
+/// Why an object has pieces that do not hang together.
+fn joined(out: &mut String, object: &Object) {
+    let told = |r: &&Reason| !matches!(r, Reason::Whole | Reason::Sliver);
+    let reasons: Vec<String> = object.joined.iter().filter(told).map(ToString::to_string).collect();
+    if !reasons.is_empty() {
+        let _ = writeln!(out, "       put together: {}", reasons.join(", "));
+    }
 }
 
 fn grasps(out: &mut String, object: &Object, most: usize) {

@@ -1,11 +1,10 @@
-//! Floor 7: from a cloud to the table plane and the objects on it.
+//! Floor 7: from a cloud to the table plane and what stands on it.
 //!
 //! [`segment`] finds the support (a table, or the floor that things stand on), takes the points above
-//! it and parts them into objects; [`segment_whole`] takes a cloud that is one object already, and
+//! it and parts them into clumps; [`segment_whole`] takes a cloud that is one object already, and
 //! [`segment_masks`] one whose objects are labelled. What was left out is listed with the reason.
 //!
-//! Objects that touch may come out as one, and one object may come out as two when something in front
-//! of it hides its middle.
+//! Objects that touch are one clump, which [`separate`](crate::separate) cuts.
 
 mod clusters;
 mod convexity;

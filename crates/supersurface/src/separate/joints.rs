@@ -16,6 +16,8 @@ pub(super) struct Joint {
     cost: f64,
 }
 
+/// Pieces that are looked at, the largest: more are noise.
+const MOST: usize = 100;
 /// How much worse than a piece's own surface that of both may explain it, up to which distance that does not matter, and
 /// from which nothing is explained, in metres.
 const WORSE: f64 = 1.1;
@@ -53,8 +55,12 @@ pub(super) fn joints(
     borders: &BTreeMap<[usize; 2], Border>,
 ) -> Vec<Joint> {
     let outlines: Vec<Vec<u32>> = pieces.iter().map(|p| view.outline(&p.points)).collect();
-    let pairs: Vec<[usize; 2]> =
-        (0..pieces.len()).flat_map(|a| (a + 1..pieces.len()).map(move |b| [a, b])).collect();
+    let mut largest: Vec<usize> = (0..pieces.len()).collect();
+    largest.sort_by_key(|k| (std::cmp::Reverse(pieces[*k].points.len()), *k));
+    largest.truncate(MOST);
+    largest.sort_unstable();
+    let after = |a: usize| largest.iter().filter(move |b| **b > a).map(move |b| [a, *b]);
+    let pairs: Vec<[usize; 2]> = largest.iter().flat_map(|a| after(*a)).collect();
     let tried = each(pairs.len(), |k| {
         let [a, b] = pairs[k];
         let border = borders.get(&[a, b]).copied().unwrap_or_default();

@@ -82,7 +82,7 @@ struct Piece {
     fit: Result<Fit, FitError>,
     /// True where it was fitted as objects are.
     fitted: bool,
-    /// Median distance of its points from their own surface, in metres.
+    /// Median distance of its points from their own surface, in metres; 0 where they give none.
     own: f64,
     /// Heights of its lowest, middle and highest points over the support, in metres.
     heights: [f64; 3],
@@ -92,7 +92,7 @@ struct Piece {
 impl Piece {
     fn new(scene: &Around<'_>, clump: usize, points: Vec<u32>, options: &FitOptions) -> Self {
         let fit = scene.fit(&points, options);
-        let own = fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(&points, f));
+        let own = fit.as_ref().map_or(0.0, |f| scene.typical(&points, f));
         let heights = scene.heights(&points);
         Self { points, clump, fit, fitted: false, own, heights, joined: Vec::new() }
     }
