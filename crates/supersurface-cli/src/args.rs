@@ -25,6 +25,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Objects and grasps of a cloud or depth image.
     Grasp(Box<GraspArgs>),
+    /// The same without grasps: the table, the objects, which points they have.
+    Segment(Box<SegmentArgs>),
     /// The same on a table scene that the command makes itself.
     Demo(DemoArgs),
     /// The surface of each cloud of one object.
@@ -41,7 +43,7 @@ pub(crate) enum Command {
 
 /// What to read and how to read it.
 #[derive(Debug, Args)]
-pub(crate) struct GraspArgs {
+pub(crate) struct InputArgs {
     /// Cloud (.pcd, .ply, .xyz, .csv) or 16-bit depth image (.png); - reads standard input.
     pub(crate) input: PathBuf,
     /// Intrinsics of a depth image: a JSON file with width, height, fx, fy, cx, cy, depth_scale
@@ -97,10 +99,26 @@ pub(crate) struct GraspArgs {
     /// Use this image (8 or 16 bits, as large as the cloud) as a given segmentation.
     #[arg(long, value_name = "FILE")]
     pub(crate) mask: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GraspArgs {
+    #[command(flatten)]
+    pub(crate) input: InputArgs,
     #[command(flatten)]
     pub(crate) how: HowArgs,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SegmentArgs {
+    #[command(flatten)]
+    pub(crate) input: InputArgs,
+    #[command(flatten)]
+    pub(crate) fit: FitHowArgs,
+    #[command(flatten)]
+    pub(crate) output: PlainOutputArgs,
 }
 
 #[derive(Debug, Args)]
@@ -120,6 +138,13 @@ pub(crate) struct HowArgs {
     /// Gripper: a TOML file, or panda_hand, robotiq_2f85, suction_cup_30.
     #[arg(long, value_name = "NAME|FILE", default_value = "panda_hand")]
     pub(crate) gripper: String,
+    #[command(flatten)]
+    pub(crate) fit: FitHowArgs,
+}
+
+/// How to fit.
+#[derive(Debug, Args)]
+pub(crate) struct FitHowArgs {
     /// Family of surfaces.
     #[arg(long, value_enum, default_value_t = Model::Auto)]
     pub(crate) model: Model,
@@ -130,25 +155,32 @@ pub(crate) struct HowArgs {
 
 /// Where results go. Everything but results goes to standard error.
 #[derive(Debug, Args)]
-pub(crate) struct OutputArgs {
+pub(crate) struct PlainOutputArgs {
     /// Print the report as JSON (fields: docs/report.md) instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Grasps an object that are printed.
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub(crate) top: usize,
     /// Write the object of each point as an int32 .npy: 0 background, -1 unassigned, k object k.
     #[arg(long, value_name = "FILE")]
     pub(crate) labels: Option<PathBuf>,
-    /// Write the grasps of all objects, up to 20 of each, as JSON, best first.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) grasps: Option<PathBuf>,
-    /// Draw the cloud, the surfaces and the best grasps.
+    /// Draw the cloud, the surfaces and the best grasps, if there are any.
     #[arg(long, value_name = "FILE")]
     pub(crate) png: Option<PathBuf>,
     /// No progress on standard error.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// The same with grasps.
+#[derive(Debug, Args)]
+pub(crate) struct OutputArgs {
+    #[command(flatten)]
+    pub(crate) plain: PlainOutputArgs,
+    /// Grasps an object that are printed.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub(crate) top: usize,
+    /// Write the grasps of all objects, up to 20 of each, as JSON, best first.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) grasps: Option<PathBuf>,
 }
 
 /// Units of length.

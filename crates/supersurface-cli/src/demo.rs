@@ -6,15 +6,16 @@ use supersurface::scene::{DepthNoise, demo, look};
 
 use crate::args::DemoArgs;
 use crate::exit::Failure;
-use crate::outputs::{Run, Source};
+use crate::outputs::{Grasping, Run, Source};
 
 /// Places supersurfaces on a table, looks at them with a simulated depth camera, and runs the pipeline on
 /// what it saw.
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let name = format!("demo scene {}", args.seed);
     let stage = ("look", "looking at a scene that was just made".into());
-    Run { how: &args.how, output: &args.output, name: &name, inputs: &[] }
-        .run(stage, || source(args.seed))
+    let grasping = Some(Grasping::of(&args.how, &args.output));
+    let (fit, output) = (&args.how.fit, &args.output.plain);
+    Run { fit, output, grasping, name: &name, inputs: &[] }.run(stage, || source(args.seed))
 }
 
 fn source(seed: u64) -> Result<Source, Failure> {

@@ -1,17 +1,27 @@
 //! From the command line to a cloud: file, camera, units, frame, viewpoint, given objects.
 
+use std::path::{Path, PathBuf};
+
 use supersurface::cloud::{PointCloud, UnitHint, unit_hint};
 use supersurface::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use supersurface::pipeline::Objects;
 use supersurface::{Point, Pose, Vector};
 use supersurface_io::{DepthCamera, Read, ReadOptions, read_camera, read_mask};
 
-use crate::args::{GraspArgs, Units};
+use crate::args::{InputArgs, Units};
 use crate::exit::Failure;
 use crate::outputs::Source;
 
+impl InputArgs {
+    /// The files that are read.
+    pub(crate) fn files(&self) -> Vec<&Path> {
+        let given = [Some(&self.input), self.camera.as_ref(), self.mask.as_ref()];
+        given.into_iter().flatten().map(PathBuf::as_path).collect()
+    }
+}
+
 /// Reads the input and puts it into metres and the frame that was asked for.
-pub(crate) fn read(args: &GraspArgs) -> Result<Source, Failure> {
+pub(crate) fn read(args: &InputArgs) -> Result<Source, Failure> {
     let options = ReadOptions { instances: args.instances.clone(), camera: camera(args)? };
     let Read { mut cloud, mut warnings, .. } =
         supersurface_io::read(&args.input, &options).map_err(Failure::input)?;
@@ -82,7 +92,7 @@ fn check(name: &str, cloud: &PointCloud) -> Result<(), Failure> {
     Ok(())
 }
 
-fn camera(args: &GraspArgs) -> Result<Option<DepthCamera>, Failure> {
+fn camera(args: &InputArgs) -> Result<Option<DepthCamera>, Failure> {
     if let Some(file) = &args.camera {
         let mut camera = read_camera(file).map_err(Failure::input)?;
         if let Some(scale) = args.depth_scale {

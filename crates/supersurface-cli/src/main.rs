@@ -10,6 +10,7 @@ mod input;
 mod outputs;
 mod places;
 mod progress;
+mod segment;
 mod shape;
 mod show;
 mod terminal;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Grasp(args) => grasp::run(args),
+        Command::Segment(args) => segment::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Gallery(args) => gallery::run(args),

@@ -11,7 +11,7 @@ use supersurface_io::{
     BUILT_IN_GRIPPERS, ReportHead, failure_json, report_json, write_grasps, write_labels, write_png,
 };
 
-use crate::args::{HowArgs, OutputArgs};
+use crate::args::{FitHowArgs, HowArgs, OutputArgs, PlainOutputArgs};
 use crate::exit::{Failure, print};
 use crate::places::Places;
 use crate::progress::Progress;
@@ -28,12 +28,27 @@ pub(crate) struct Source {
 
 /// One run: how it is done and where its results go.
 pub(crate) struct Run<'a> {
-    pub(crate) how: &'a HowArgs,
-    pub(crate) output: &'a OutputArgs,
+    pub(crate) fit: &'a FitHowArgs,
+    pub(crate) output: &'a PlainOutputArgs,
+    /// What is planned beside the objects, if anything.
+    pub(crate) grasping: Option<Grasping<'a>>,
     /// Name of the input, for the report.
     pub(crate) name: &'a str,
     /// Files that are read, beside the gripper.
     pub(crate) inputs: &'a [&'a Path],
+}
+
+/// For what gripper grasps are planned, how many are printed, and where they are written.
+pub(crate) struct Grasping<'a> {
+    gripper: &'a str,
+    top: usize,
+    file: Option<&'a Path>,
+}
+
+impl<'a> Grasping<'a> {
+    pub(crate) fn of(how: &'a HowArgs, output: &'a OutputArgs) -> Self {
+        Self { gripper: &how.gripper, top: output.top, file: output.grasps.as_deref() }
+    }
 }
 
 impl Run<'_> {
@@ -45,23 +60,28 @@ impl Run<'_> {
         source: impl FnOnce() -> Result<Source, Failure> + Send,
     ) -> Result<(), Failure> {
         self.check_files()?;
-        let gripper = supersurface_io::read_gripper(&self.how.gripper).map_err(Failure::input)?;
+        let gripper = self.grasping.as_ref().map(|g| supersurface_io::read_gripper(g.gripper));
+        let gripper = gripper.transpose().map_err(Failure::input)?;
         let mut progress = Progress::new(self.output.quiet);
-        let (pool, fewer) = threads::pool(self.how.threads)?;
+        let (pool, fewer) = threads::pool(self.fit.threads)?;
         if let Some(warning) = fewer {
             progress.warn(&warning);
         }
         progress.begin(stage.0, stage.1);
-        pool.install(|| self.go(source, &gripper, progress))
+        pool.install(|| self.go(source, gripper.as_ref(), progress))
     }
 
     /// No output may replace another one or what is read.
     fn check_files(&self) -> Result<(), Failure> {
-        let built_in = BUILT_IN_GRIPPERS.iter().any(|(name, _)| *name == self.how.gripper);
-        let gripper = (!built_in).then_some(Path::new(&self.how.gripper));
+        let built_in = |gripper: &str| BUILT_IN_GRIPPERS.iter().any(|(name, _)| *name == gripper);
+        let gripper = self.grasping.as_ref().map(|g| g.gripper).filter(|g| !built_in(g));
+        let gripper = gripper.map(Path::new);
         let mut places = Places::read(self.inputs.iter().copied().chain(gripper));
-        let OutputArgs { labels, grasps, png, .. } = self.output;
-        for (option, file) in [("--labels", labels), ("--grasps", grasps), ("--png", png)] {
+        let PlainOutputArgs { labels, png, .. } = self.output;
+        let grasps = self.grasping.as_ref().and_then(|g| g.file);
+        let files =
+            [("--labels", labels.as_deref()), ("--grasps", grasps), ("--png", png.as_deref())];
+        for (option, file) in files {
             if let Some(file) = file {
                 places.take(option, file)?;
             }
@@ -72,7 +92,7 @@ impl Run<'_> {
     fn go(
         &self,
         source: impl FnOnce() -> Result<Source, Failure>,
-        gripper: &Gripper,
+        gripper: Option<&Gripper>,
         mut progress: Progress,
     ) -> Result<(), Failure> {
         let source = match source() {
@@ -87,11 +107,14 @@ impl Run<'_> {
         }
         let options = Options {
             objects: source.objects,
-            fit: self.how.model.family().map_or(FitOptions::UNDEFORMED, FitOptions::only).quick(),
+            fit: self.fit.model.family().map_or(FitOptions::UNDEFORMED, FitOptions::only).quick(),
             ..Options::default()
         };
         let told = &mut |stage| progress.stage(stage);
-        let found = pipeline::run(&source.cloud, gripper, &options, told);
+        let found = match gripper {
+            Some(gripper) => pipeline::run(&source.cloud, gripper, &options, told),
+            None => pipeline::find(&source.cloud, &options, told),
+        };
         let found = found.map_err(|error| self.no_result(&error, &source.cloud));
         let result = found.as_ref().map_err(String::as_str);
         let mut left = self.leave(result, Some(&source), gripper, progress).into_iter();
@@ -103,6 +126,11 @@ impl Run<'_> {
             }
             Ok(_) => left.next().map_or(Ok(()), |first| Err(first.and(left))),
         }
+    }
+
+    /// Grasps an object that are printed.
+    fn top(&self) -> usize {
+        self.grasping.as_ref().map_or(0, |g| g.top)
     }
 
     /// Why the pipeline gave nothing, and the mend.
@@ -118,7 +146,7 @@ impl Run<'_> {
     fn head<'b>(
         &'b self,
         source: Option<&'b Source>,
-        gripper: &'b Gripper,
+        gripper: Option<&'b Gripper>,
         timing: &'b [(&'static str, f64)],
     ) -> ReportHead<'b> {
         ReportHead {
@@ -126,7 +154,7 @@ impl Run<'_> {
             frame: source.map_or("cloud", |s| s.frame),
             cloud: source.map(|s| &s.cloud),
             gripper,
-            most_grasps: self.output.top,
+            most_grasps: self.top(),
             timing,
             warnings: source.map_or(&[], |s| &s.warnings),
         }
@@ -138,7 +166,7 @@ impl Run<'_> {
         &self,
         result: Result<&Report, &str>,
         source: Option<&Source>,
-        gripper: &Gripper,
+        gripper: Option<&Gripper>,
         mut progress: Progress,
     ) -> Vec<Failure> {
         let nothing = Report::default();
@@ -154,7 +182,8 @@ impl Run<'_> {
             left.push(write_png(path, [image.width, image.height], &image.pixels));
         }
         let times = progress.finish();
-        if let Some(path) = &self.output.grasps {
+        let file = self.grasping.as_ref().and_then(|g| g.file);
+        if let (Some(path), Some(gripper)) = (file, gripper) {
             let planning = times.iter().filter(|(name, _)| *name != "draw" && *name != "look");
             let seconds = planning.map(|(_, s)| s).sum();
             let frame = source.map_or("camera", frame_id);
@@ -164,7 +193,7 @@ impl Run<'_> {
         let text = match result {
             Ok(report) if self.output.json => report_json(report, &head) + "\n",
             Err(message) if self.output.json => failure_json(message, &head) + "\n",
-            Ok(report) => terminal::table(report, self.output.top),
+            Ok(report) => terminal::table(report, self.top()),
             Err(_) => String::new(),
         };
         let left = left.into_iter().map(|written| written.map_err(Failure::output));

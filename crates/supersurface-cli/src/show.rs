@@ -27,7 +27,7 @@ const STEEL: Colour = [70, 76, 86];
 const INK: Colour = [28, 30, 34];
 
 /// Draws cloud, surfaces and the best grasp of each object.
-pub(crate) fn picture(cloud: &PointCloud, report: &Report, gripper: &Gripper) -> Image {
+pub(crate) fn picture(cloud: &PointCloud, report: &Report, gripper: Option<&Gripper>) -> Image {
     let labels = report.segmentation.labels(&cloud.points);
     let shown = interest(cloud, report);
     let up = up(cloud, report, &shown);
@@ -37,7 +37,8 @@ pub(crate) fn picture(cloud: &PointCloud, report: &Report, gripper: &Gripper) ->
     let made = made(cloud, &labels, report, gripper, &View::towards(&shown, &up, &turned));
     let mut image = seen.beside(&made, 4);
     image.text(14.0, 12.0, "seen: the cloud, objects in colours", INK, 16.0);
-    let title = format!("made of it: surfaces and best grasps of {}", gripper.name);
+    let grasps = gripper.map(|g| format!(" and best grasps of {}", g.name)).unwrap_or_default();
+    let title = format!("made of it: surfaces{grasps}");
     image.text(WIDTH as f64 + 18.0, 12.0, &title, INK, 16.0);
     image
 }
@@ -107,7 +108,7 @@ fn made(
     cloud: &PointCloud,
     labels: &[i32],
     report: &Report,
-    gripper: &Gripper,
+    gripper: Option<&Gripper>,
     view: &View,
 ) -> Image {
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
@@ -121,7 +122,8 @@ fn made(
         if let Ok(fit) = &object.fit {
             picture.surface(&fit.surface, colour, 0.5);
         }
-        if let Some(best) = object.grasps.as_ref().ok().and_then(|g| g.first()) {
+        let best = object.grasps.as_ref().ok().and_then(|g| g.first());
+        if let (Some(gripper), Some(best)) = (gripper, best) {
             draw_gripper(&mut picture, gripper, best);
         }
     }
@@ -141,11 +143,13 @@ fn caption(id: usize, object: &Object) -> String {
         let kind = if fit.surface.shape().ring_ratio().is_some() { "toroid " } else { "" };
         let _ = write!(words, " {kind}{x:.0}x{y:.0}x{z:.0}");
     }
-    match object.grasps.as_ref().ok().and_then(|g| g.first()) {
-        Some(best) => {
-            let _ = write!(words, " {} {:.2}", best.source, best.score);
+    match &object.grasps {
+        Ok(grasps) => {
+            for best in grasps.iter().take(1) {
+                let _ = write!(words, " {} {:.2}", best.source, best.score);
+            }
         }
-        None => words.push_str(" not held"),
+        Err(_) => words.push_str(" not held"),
     }
     words
 }

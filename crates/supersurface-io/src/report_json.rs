@@ -20,8 +20,8 @@ pub struct ReportHead<'a> {
     pub frame: &'a str,
     /// What was read, in that frame; `None` where nothing could be.
     pub cloud: Option<&'a PointCloud>,
-    /// The gripper for which grasps were planned.
-    pub gripper: &'a Gripper,
+    /// The gripper for which grasps were planned; `None` where none were.
+    pub gripper: Option<&'a Gripper>,
     /// Most grasps an object that are written.
     pub most_grasps: usize,
     /// Seconds of each stage by name.
@@ -64,7 +64,7 @@ struct File<'a> {
     cloud: Option<CloudRow>,
     message: Option<String>,
     plane: Option<PlaneRow>,
-    gripper: &'a str,
+    gripper: Option<&'a str>,
     objects: Vec<ObjectRow>,
     dropped: Vec<DroppedRow>,
     timing_s: std::collections::BTreeMap<&'static str, f64>,
@@ -85,7 +85,7 @@ impl<'a> File<'a> {
             cloud: head.cloud.map(CloudRow::new),
             message: None,
             plane: None,
-            gripper: &head.gripper.name,
+            gripper: head.gripper.map(|g| &g.name[..]),
             objects: Vec::new(),
             dropped: Vec::new(),
             timing_s: head.timing.iter().copied().collect(),
@@ -169,8 +169,8 @@ fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> O
         inlier_share: f.inlier_share(),
         family_margin: f.margin,
     });
-    let kind = kind(head.gripper);
     let grasps = object.grasps.iter().flatten().take(head.most_grasps);
+    let row = |g: &Grasp| head.gripper.map(|gripper| GraspRow::new(g, kind(gripper)));
     ObjectRow {
         id,
         points,
@@ -178,7 +178,7 @@ fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> O
         surface,
         quality,
         error: fit.err().map(ToString::to_string),
-        grasps: grasps.map(|g| GraspRow::new(g, kind)).collect(),
+        grasps: grasps.filter_map(row).collect(),
         refusal: object.grasps.as_ref().err().map(ToString::to_string),
     }
 }

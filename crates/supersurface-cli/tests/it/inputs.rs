@@ -57,6 +57,27 @@ fn standard_input_and_a_file_without_pixels() {
 }
 
 #[test]
+fn objects_alone_are_those_that_are_held() {
+    let cloud = xyz(&seen().0, 1.0);
+    let [labels, picture] = ["alone.npy", "alone.png"].map(scratch);
+    let to = ["--labels", text(&labels), "--png", text(&picture)];
+    let alone = run_on(&[&["segment", "-", "--json"], &to[..]].concat(), cloud.as_bytes());
+    let alone = alone.ended(0).json();
+    let held = run_on(&["grasp", "-", "--json"], cloud.as_bytes()).ended(0).json();
+    assert!(alone["gripper"].is_null() && held["gripper"] == "panda_hand");
+    let objects = alone["objects"].as_array().unwrap();
+    assert_eq!(objects.len(), held["objects"].as_array().unwrap().len());
+    for (a, b) in objects.iter().zip(held["objects"].as_array().unwrap()) {
+        assert_eq!((&a["surface"], &a["points"]), (&b["surface"], &b["points"]));
+        assert!(a["grasps"].as_array().unwrap().is_empty() && a["refusal"].is_null());
+    }
+    assert!(labels.exists() && picture.exists());
+    run_on(&["segment", "-"], b"").ended(3);
+    let twice = ["segment", "-", "--labels", text(&labels), "--png", text(&labels)];
+    run(&twice).ended(2);
+}
+
+#[test]
 fn millimetres_are_noticed_and_read() {
     let cloud = xyz(&seen().0, 1e-3);
     let ran = run_on(&["grasp", "-", "--json"], cloud.as_bytes());

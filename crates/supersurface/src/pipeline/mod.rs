@@ -87,6 +87,22 @@ pub fn run(
     options: &Options,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Report, SegmentError> {
+    let mut report = find(cloud, options, progress)?;
+    progress(Stage::Grasp(report.objects.len()));
+    let around = Surroundings::new(cloud, &report.segmentation);
+    let grasps = each(report.objects.len(), |i| {
+        plan(i, report.objects[i].fit.as_ref().ok(), &around, gripper, &options.grasp)
+    });
+    report.objects.iter_mut().zip(grasps).for_each(|(object, grasps)| object.grasps = grasps);
+    Ok(report)
+}
+
+/// The same without grasps.
+pub fn find(
+    cloud: &PointCloud,
+    options: &Options,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Report, SegmentError> {
     progress(Stage::Segment);
     let mut segmentation = match options.objects {
         Objects::Find => segment(cloud, &options.segment)?,
@@ -108,13 +124,7 @@ pub fn run(
             each(segmentation.objects.len(), |i| given(&segmentation.objects[i]))
         }
     };
-    progress(Stage::Grasp(things.len()));
-    let around = Surroundings::new(cloud, &segmentation);
-    let grasps = each(things.len(), |i| {
-        plan(i, things[i].fit.as_ref().ok(), &around, gripper, &options.grasp)
-    });
     let object =
-        |(thing, grasps): (Thing, _)| Object { fit: thing.fit, joined: thing.joined, grasps };
-    let objects = things.into_iter().zip(grasps).map(object).collect();
-    Ok(Report { segmentation, objects })
+        |thing: Thing| Object { fit: thing.fit, joined: thing.joined, grasps: Ok(Vec::new()) };
+    Ok(Report { segmentation, objects: things.into_iter().map(object).collect() })
 }
