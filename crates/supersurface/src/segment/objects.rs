@@ -29,9 +29,9 @@ const MOST: usize = 300;
 /// Size under which, and height of the foot over which, nothing hangs in the air, in metres: larger and
 /// lower things may have a foot that was not seen.
 const SMALL: f64 = 0.1;
+const HIGH: f64 = 0.15;
 /// Part of a thing's height that may be hidden over what carries it, in metres.
 const FOOT: f64 = 0.04;
-const HIGH: f64 = 0.15;
 
 /// The objects among `pieces`, in the order of their first points, and what is none.
 pub(crate) fn gather(

@@ -138,15 +138,26 @@ pub fn separate(
         Thing { fit, points, joined }
     });
     things.sort_by_key(|thing| thing.points.first().copied());
-    if let Some(frame) = Frame::of(cloud) {
-        let (cut, whole) = things.into_iter().partition(|thing| frame.cuts(&thing.points));
-        things = whole;
-        let cut: Vec<Thing> = cut;
-        let dropped = |thing: Thing| Dropped { points: thing.points, reason: DropReason::CutOff };
-        segmentation.dropped.extend(cut.into_iter().map(dropped));
-    }
+    let left = left_over(&segmentation.objects, &things, cloud.points.len());
+    let specks = (!left.is_empty()).then_some((left, DropReason::Speck));
+    let frame = Frame::of(cloud);
+    let is_cut = |thing: &Thing| frame.is_some_and(|frame| frame.cuts(&thing.points));
+    let (cut, things): (Vec<Thing>, Vec<Thing>) = things.into_iter().partition(is_cut);
+    let cut = cut.into_iter().map(|thing| (thing.points, DropReason::CutOff));
+    let dropped = cut.chain(specks).map(|(points, reason)| Dropped { points, reason });
+    segmentation.dropped.extend(dropped);
     segmentation.objects = things.iter().map(|thing| thing.points.clone()).collect();
     things
+}
+
+/// The points of clumps that are no thing's.
+fn left_over(clumps: &[Vec<u32>], things: &[Thing], count: usize) -> Vec<u32> {
+    let mut taken = vec![false; count];
+    things.iter().flat_map(|thing| &thing.points).for_each(|i| taken[*i as usize] = true);
+    let mut left: Vec<u32> =
+        clumps.iter().flatten().filter(|i| !taken[**i as usize]).copied().collect();
+    left.sort_unstable();
+    left
 }
 
 /// The pieces that are one object, and why.

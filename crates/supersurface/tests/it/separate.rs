@@ -27,8 +27,13 @@ fn seen(things: Vec<Thing>, seed: u64) -> (PointCloud, Vec<Option<usize>>) {
 
 fn parted(cloud: &PointCloud) -> (Vec<Object>, Segmentation) {
     let mut segmentation = segment(cloud, &SegmentOptions::default()).unwrap();
+    let points = |s: &Segmentation| -> usize {
+        s.objects.iter().chain(s.dropped.iter().map(|d| &d.points)).map(Vec::len).sum()
+    };
+    let before = points(&segmentation);
     let objects = separate(cloud, &mut segmentation, &FitOptions::UNDEFORMED.quick());
     assert_eq!(segmentation.objects.len(), objects.len());
+    assert_eq!(points(&segmentation), before, "no point is lost");
     (objects, segmentation)
 }
 
