@@ -8,6 +8,7 @@
 //! - is the space between it and another piece *hidden* by a third?
 
 use crate::segment::clusters::Class;
+use crate::segment::sight::seen;
 use crate::{Point, Vector};
 
 /// An organised cloud and the piece that each pixel belongs to.
@@ -114,7 +115,7 @@ impl<'a> Image<'a> {
         let own = self.owner.get(*pixels.first()? as usize)?;
         let mut fronts: Vec<usize> = Vec::new();
         let mut columns = 0usize;
-        for i in self.lowest(pixels) {
+        for i in lowest(pixels, self.width) {
             columns += 1;
             let other = if across {
                 let mut under = self.under(i, self.width / ACROSS);
@@ -131,30 +132,9 @@ impl<'a> Image<'a> {
         (2 * front.len() > columns).then(|| front[0])
     }
 
-    /// True when under most of a piece's lower edge something is seen that is well behind it: were there
-    /// a side below the edge, it would be seen instead. From straight above nothing can be told.
+    /// Whether a piece hangs, see [`hangs`].
     pub(crate) fn hangs(&self, pixels: &[u32], up: &Vector) -> bool {
-        let (mut columns, mut free) = (0, 0);
-        for i in self.lowest(pixels) {
-            let reading = self.under(i, SKIP).find(|j| self.class[*j] != Class::Missing);
-            if let Some(j) = reading {
-                columns += 1;
-                let step = self.points[j] - self.points[i];
-                let drop = -step.dot(up);
-                let behind = (step + up * drop).norm() > SLANT * drop.abs();
-                free += usize::from(behind && self.range(j) > self.range(i) + 2.0 * IN_FRONT);
-            }
-        }
-        columns >= 3 && 10 * free > 7 * columns
-    }
-
-    /// The lowest pixel of each column of a piece.
-    fn lowest(&self, pixels: &[u32]) -> impl Iterator<Item = usize> + use<> {
-        let mut lowest = vec![NOBODY; self.width];
-        for i in pixels {
-            lowest[*i as usize % self.width] = *i;
-        }
-        lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize)
+        hangs(self.points, self.width, &self.eye, pixels, up)
     }
 
     /// The pixels under one, at most `reach` of them.
@@ -189,4 +169,37 @@ impl<'a> Image<'a> {
         }
         rows >= 5 && 5 * hidden > 4 * rows
     }
+}
+
+/// True when under most of a piece's lower edge in an image something is seen that is well behind it: were there a side
+/// below the edge, it would be seen instead. From straight above nothing can be told.
+pub(crate) fn hangs(
+    points: &[Point],
+    width: usize,
+    eye: &Point,
+    pixels: &[u32],
+    up: &Vector,
+) -> bool {
+    let range = |i: usize| (points[i] - eye).norm();
+    let (mut columns, mut free) = (0, 0);
+    for i in lowest(pixels, width) {
+        let mut under = (1..=SKIP).map(|k| i + k * width).take_while(|j| *j < points.len());
+        if let Some(j) = under.find(|j| seen(&points[*j])) {
+            columns += 1;
+            let step = points[j] - points[i];
+            let drop = -step.dot(up);
+            let behind = (step + up * drop).norm() > SLANT * drop.abs();
+            free += usize::from(behind && range(j) > range(i) + 2.0 * IN_FRONT);
+        }
+    }
+    columns >= 3 && 10 * free > 7 * columns
+}
+
+/// The lowest pixel of each column of a piece.
+fn lowest(pixels: &[u32], width: usize) -> impl Iterator<Item = usize> + use<> {
+    let mut lowest = vec![NOBODY; width];
+    for i in pixels {
+        lowest[*i as usize % width] = *i;
+    }
+    lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize)
 }

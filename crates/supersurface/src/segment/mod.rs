@@ -22,6 +22,7 @@ mod table;
 
 pub use convexity::convex_pieces;
 pub(crate) use frame::Frame;
+pub(crate) use image::hangs;
 pub use masks::{segment_masks, segment_whole};
 pub use table::NoTable;
 

@@ -16,22 +16,22 @@ pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).qu
 
 /// What is known of a scene beside the points of an object.
 #[derive(Clone, Copy, Debug)]
-pub struct Around<'a> {
+pub(crate) struct Around<'a> {
     /// The scene.
-    pub cloud: &'a PointCloud,
+    pub(crate) cloud: &'a PointCloud,
     /// What the objects stand on.
-    pub support: Option<Plane>,
+    pub(crate) support: Option<Plane>,
 }
 
 impl Around<'_> {
     /// The surface of the points named, seen from where the cloud was.
-    pub fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
+    pub(crate) fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
         let free = free_points(self.cloud, object);
         self.fit_view(object, self.cloud.viewpoint, &free, options)
     }
 
     /// The same for a cloud that shows nothing else.
-    pub fn fit_alone(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
+    pub(crate) fn fit_alone(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
         let free = outline_points(self.cloud, object);
         self.fit_view(object, self.cloud.viewpoint, &free, options)
     }

@@ -15,7 +15,7 @@ mod view;
 
 use std::collections::BTreeMap;
 
-pub use bodies::Around;
+pub(crate) use bodies::Around;
 
 use crate::cloud::{PointCloud, Sets};
 use crate::fit::{Fit, FitError, FitOptions};

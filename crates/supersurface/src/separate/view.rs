@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::cloud::PointCloud;
 use crate::fit::Fit;
 use crate::measure::first_hit;
+use crate::segment::hangs;
 use crate::shape::{Implicit, Plane, Ray};
 use crate::{Direction, Point, Vector};
 
@@ -40,13 +41,6 @@ const TRIED: usize = 300;
 /// Depth under the top of a wall, in metres, to which its rim may be cut off, and lines of sight over it that are looked at.
 const RIM: f64 = 0.012;
 const LOOKED: usize = 60;
-/// Pixels without reading that are passed over under a piece.
-const SKIP: usize = 8;
-/// Way behind per way down from which the view is too oblique to miss a side: 22 degrees off the vertical.
-const SLANT: f64 = 0.4;
-/// What lies so far behind a piece, in metres, is not its own side.
-const WELL_BEHIND: f64 = 0.016;
-
 /// Pairs of neighbouring pixels of two pieces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Border {
@@ -62,7 +56,8 @@ impl<'a> View<'a> {
         cloud: &'a PointCloud,
         pieces: impl Iterator<Item = &'p [u32]>,
     ) -> Option<Self> {
-        let [width, height] = cloud.grid.filter(|[w, h]| w * h == cloud.points.len())?;
+        let [width, height] =
+            cloud.grid.filter(|[w, h]| w.checked_mul(*h) == Some(cloud.points.len()))?;
         let mut owner = vec![NOBODY; width * height];
         for (k, piece) in pieces.enumerate() {
             piece.iter().for_each(|i| owner[*i as usize] = k as u32);
@@ -211,22 +206,8 @@ impl<'a> View<'a> {
         some().filter(faces).count() as f64 / some().count().max(1) as f64
     }
 
-    /// True when under most of a piece's lower edge something is seen that is well behind it: were there a side below the
-    /// edge, it would be seen instead. From straight above nothing can be told.
+    /// Whether a piece hangs in the air, as the image tells.
     pub(super) fn hangs(&self, piece: &[u32], up: &Vector) -> bool {
-        let mut lowest = vec![NOBODY; self.width];
-        piece.iter().for_each(|i| lowest[*i as usize % self.width] = *i);
-        let (mut columns, mut free) = (0, 0);
-        for i in lowest.into_iter().filter(|i| *i != NOBODY).map(|i| i as usize) {
-            let under =
-                (1..=SKIP).map(|k| i + k * self.width).take_while(|j| *j < self.points.len());
-            let Some(j) = under.into_iter().find(|j| self.range(*j).is_finite()) else { continue };
-            columns += 1;
-            let step = self.points[j] - self.points[i];
-            let drop = -step.dot(up);
-            let behind = (step + up * drop).norm() > SLANT * drop.abs();
-            free += usize::from(behind && self.range(j) > self.range(i) + WELL_BEHIND);
-        }
-        columns >= 3 && 10 * free > 7 * columns
+        hangs(self.points, self.width, &self.eye, piece, up)
     }
 }
