@@ -2,10 +2,10 @@
 
 use crate::camera::Camera;
 use crate::numeric::random::Stream;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, facing};
 use crate::shape::{Superellipsoid, Supertoroid};
 use crate::surface::Surface;
-use crate::{Point, Pose, Vector};
+use crate::{Point, Pose};
 use nalgebra::UnitQuaternion;
 
 /// A laid table and the camera before it.
@@ -69,11 +69,4 @@ pub fn demo(seed: u64) -> Result<Demo, SceneError> {
     let eye = Point::new(0.0, -0.56, 0.58);
     let camera_pose = facing(&eye, &Point::new(0.01, 0.0, 0.02));
     Ok(Demo { scene, camera, camera_pose })
-}
-
-/// The pose of an optical frame at `eye` that looks at `target` with the world's z axis upright.
-fn facing(eye: &Point, target: &Point) -> Pose {
-    // the frame's z axis looks ahead and its y axis points down
-    let rotation = UnitQuaternion::face_towards(&(target - eye), &-Vector::z());
-    Pose::from_parts(eye.coords.into(), rotation)
 }

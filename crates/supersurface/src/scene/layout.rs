@@ -17,7 +17,7 @@ const FLAT: f64 = 0.5;
 /// Free space between the bounding circles of two bodies, in metres.
 const GAP: f64 = 0.02;
 /// How often another place is tried for one body.
-const TRIALS: usize = 2000;
+pub(super) const TRIALS: usize = 2000;
 
 /// Why a scene cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -113,7 +113,7 @@ pub fn rests(shape: &Surface) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// Half extents along the world's axes of a shape turned by `rest`.
-fn footprint(shape: &Surface, rest: &UnitQuaternion<f64>) -> Vector {
+pub(super) fn footprint(shape: &Surface, rest: &UnitQuaternion<f64>) -> Vector {
     rest.to_rotation_matrix().matrix().abs() * Vector::from(shape.half_extents())
 }
 

@@ -3,10 +3,11 @@
 use crate::camera::{Camera, DepthImage};
 use crate::measure::first_hit;
 use crate::numeric::random::Stream;
-use crate::scene::{DepthNoise, Scene};
+use crate::scene::{Body, DepthNoise, Scene};
 use crate::shape::{Implicit, Posed, Ray};
 use crate::surface::Surface;
-use crate::{Direction, Point, Pose};
+use crate::{Direction, Point, Pose, Vector};
+use nalgebra::UnitQuaternion;
 
 /// A jump of depth between neighbours, relative to the depth, that counts as an edge.
 const JUMP: f64 = 0.015;
@@ -19,6 +20,13 @@ pub struct Look {
     pub depth: DepthImage,
     /// For each pixel: k for the body `bodies[k - 1]`, 0 for the table and where there is no reading.
     pub labels: Vec<u32>,
+}
+
+/// The pose of an optical frame at `eye` that looks at `target` with the world's z axis upright.
+pub fn facing(eye: &Point, target: &Point) -> Pose {
+    // the frame's z axis looks ahead and its y axis points down
+    let rotation = UnitQuaternion::face_towards(&(target - eye), &-Vector::z());
+    Pose::from_parts(eye.coords.into(), rotation)
 }
 
 /// A body as rays meet it: in its own frame, which its bounds fit tightly.
@@ -65,12 +73,42 @@ pub fn look(
         }
         let mut stream = Stream::new(!seed, i as u64);
         let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
-        let z = noise.reading(depth, incidence, edge, &mut stream) as f32;
+        let error = match noise.patch {
+            0 | 1 => stream.normal(),
+            side => patch_error(i, width, side, seed),
+        };
+        let z = noise.reading(depth, incidence, edge, error, &mut stream) as f32;
         (z, if z.is_nan() { 0 } else { label })
     };
     let (depth, labels) = gather(width * height, reading).into_iter().unzip();
     let depth = DepthImage::new([width, height], depth);
     Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels }
+}
+
+/// The error of a pixel that is the mean of its square's, scaled to a standard deviation of 1. The pixels of a square have
+/// their own streams, so that this is the same on any number of threads.
+fn patch_error(i: usize, width: usize, side: usize, seed: u64) -> f64 {
+    let half = side / 2;
+    let (u, v) = (i % width + half, i / width + half);
+    let rows = (v - half..v - half + side)
+        .flat_map(|v| (u - half..u - half + side).map(move |u| (v * (width + side) + u) as u64));
+    rows.map(|k| Stream::new(seed.rotate_left(32), k).normal()).sum::<f64>() / side as f64
+}
+
+/// How much each body of a scene shows of what it would show alone: the share of its pixels at which nothing is nearer; 0
+/// for a body outside the image.
+pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64> {
+    let alone = |body: &Body| {
+        let scene = Scene { bodies: vec![body.clone()], ..scene.clone() };
+        let seen = look(&scene, camera, camera_pose, &DepthNoise::none(), 0);
+        seen.labels.iter().filter(|l| **l == 1).count() as f64
+    };
+    let all = look(scene, camera, camera_pose, &DepthNoise::none(), 0);
+    let share = |(k, body): (usize, &Body)| {
+        let shown = all.labels.iter().filter(|l| **l as usize == k + 1).count() as f64;
+        shown / alone(body).max(1.0)
+    };
+    scene.bodies.iter().enumerate().map(share).collect()
 }
 
 /// All values of `f` in order, on all cores.
@@ -112,7 +150,7 @@ impl<'a> Target<'a> {
 }
 
 /// What a ray meets first; `along` is the point at depth 1 that it passes, in the optical frame.
-fn see(scene: &Scene, targets: &[Target<'_>], pose: &Pose, along: crate::Vector) -> Seen {
+fn see(scene: &Scene, targets: &[Target<'_>], pose: &Pose, along: Vector) -> Seen {
     let length = along.norm();
     let ray = Ray {
         origin: Point::from(pose.translation.vector),

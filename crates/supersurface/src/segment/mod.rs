@@ -24,6 +24,7 @@ pub use convexity::convex_pieces;
 pub(crate) use frame::Frame;
 pub(crate) use image::hangs;
 pub use masks::{segment_masks, segment_whole};
+pub(crate) use patches::{Patches, patches};
 pub use table::NoTable;
 
 use crate::Point;

@@ -6,9 +6,13 @@ use super::bodies::{Around, QUICK};
 use super::view::{Border, View};
 use super::{Piece, Reason};
 use crate::cloud::Sets;
+use crate::fit::Fit;
+use crate::shape::{Plane, SupportMap};
 
 /// Height over the support from which a piece may hang, in metres.
 const ALOFT: f64 = 0.02;
+/// Height of the lowest point of a surface that stands on the support, in metres.
+const FOOT: f64 = 0.008;
 /// Share of its neighbour's points up to which a piece is a bit of it: where it hangs, and where it does not.
 const HANGING: f64 = 0.3;
 const CRUMB: f64 = 0.08;
@@ -56,12 +60,22 @@ pub(super) fn hang_on(
         };
         let own_root = sets.root(k);
         let share = size(own_root, sets) / size(root, sets);
-        let hangs = || pieces[k].heights[0] > ALOFT && view.hangs(&pieces[k].points, &up);
+        let hangs = || {
+            pieces[k].heights[0] > ALOFT
+                && view.hangs(&pieces[k].points, &up)
+                && !stands(&pieces[k], &support)
+        };
         if pairs >= TOUCH && (share < CRUMB || share < HANGING && hangs()) {
             sets.join(root, k);
             reasons.push((k, if share < CRUMB { Reason::Sliver } else { Reason::Hanging }));
         }
     }
+}
+
+/// Whether a piece reaches the support by its own surface, as a ball does whose lowest points are not seen.
+fn stands(piece: &Piece, support: &Plane) -> bool {
+    let lowest = |fit: &Fit| support.height(&fit.surface.support_point(&-support.normal()));
+    piece.fit.as_ref().is_ok_and(|fit| lowest(fit) < FOOT)
 }
 
 /// Joins what the body of a hollow set explains as its inside.

@@ -10,6 +10,8 @@ use crate::shape::{Implicit, Plane};
 const STANDING: f64 = 0.015;
 /// Points at which a surface is compared with what it should explain.
 const SOME: usize = 200;
+/// Farther from a surface than this, in metres, is off it.
+const FAR: f64 = 0.01;
 
 /// How pieces are fitted.
 pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
@@ -65,14 +67,23 @@ impl Around<'_> {
             .map(|k| *heights.select_nth_unstable_by(k, f64::total_cmp).1)
     }
 
-    /// Median of the first-order distances `|g - 1|/|∇g|` of some of the points from a surface, in metres.
+    /// Mean of the distances of some of the points from a surface, none counted for more than 10 mm, in metres.
+    pub(super) fn rough(&self, points: &[u32], fit: &Fit) -> f64 {
+        let some = || points.iter().step_by(points.len().div_ceil(SOME).max(1));
+        let sum: f64 = some().map(|i| self.distance(*i, fit).min(FAR)).sum();
+        sum / some().count().max(1) as f64
+    }
+
+    /// First-order distance `|g - 1|/|∇g|` of a point from a surface, in metres.
+    fn distance(&self, i: u32, fit: &Fit) -> f64 {
+        let p = &self.cloud.points[i as usize];
+        (fit.surface.gauge(p) - 1.0).abs() / fit.surface.gradient(p).norm().max(1e-9)
+    }
+
+    /// Median of the distances of some of the points from a surface, in metres.
     pub(super) fn typical(&self, points: &[u32], fit: &Fit) -> f64 {
-        let distance = |i: &u32| {
-            let p = &self.cloud.points[*i as usize];
-            (fit.surface.gauge(p) - 1.0).abs() / fit.surface.gradient(p).norm().max(1e-9)
-        };
         let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
-        let mut distances: Vec<f64> = some.map(distance).collect();
+        let mut distances: Vec<f64> = some.map(|i| self.distance(*i, fit)).collect();
         if distances.is_empty() {
             return f64::INFINITY;
         }

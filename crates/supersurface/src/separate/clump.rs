@@ -1,6 +1,7 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
 use super::bodies::{Around, QUICK};
+use super::split::{is_better, split};
 use super::{Piece, Reason};
 use crate::fit::{Fit, FitOptions};
 use crate::segment::convex_pieces;
@@ -32,16 +33,26 @@ pub(super) fn clumped(
 ) -> Vec<Piece> {
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
-    let (large, slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
+    let (mut large, slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
     let whole = |joined: Option<Reason>| {
         let piece = Piece::new(scene, clump, points.to_vec(), options);
         vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
     };
     if large.len() < 2 {
-        return whole((!slivers.is_empty()).then_some(Reason::Sliver));
+        let all = whole((!slivers.is_empty()).then_some(Reason::Sliver));
+        let found = all[0].fit.as_ref().ok().and_then(|fit| split(scene, &all[0].points, fit));
+        let Some(sides) = found else { return all };
+        large = sides.to_vec();
     }
-    let mut parts: Vec<Piece> =
-        large.into_iter().map(|points| Piece::new(scene, clump, points, &QUICK)).collect();
+    let mut parts: Vec<Piece> = Vec::new();
+    while let Some(points) = large.pop() {
+        let piece = Piece::new(scene, clump, points, &QUICK);
+        match piece.fit.as_ref().ok().and_then(|fit| split(scene, &piece.points, fit)) {
+            Some(sides) => large.extend(sides),
+            None => parts.push(piece),
+        }
+    }
+    parts.sort_by_key(|part| part.points[0]);
     if parts.len() < MANY {
         let all = whole(Some(Reason::Whole));
         if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
@@ -70,6 +81,12 @@ fn explains(scene: &Around<'_>, whole: &Fit, parts: &[Piece]) -> bool {
         parts.iter().filter(poorly).map(|p| p.points.len()).sum::<usize>() as f64
     };
     let all = parts.iter().map(|p| p.points.len()).sum::<usize>() as f64;
+    let mean = |of: &dyn Fn(&Piece) -> f64| {
+        parts.iter().map(|p| of(p) * p.points.len() as f64).sum::<f64>() / all
+    };
+    if is_better(mean(&|p| scene.rough(&p.points, whole)), mean(&|p| p.rough)) {
+        return false;
+    }
     let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
     unexplained(WORSE, SLIGHT) == 0.0
         || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * all

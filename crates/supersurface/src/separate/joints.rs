@@ -23,6 +23,8 @@ const MOST: usize = 100;
 const WORSE: f64 = 1.1;
 const SLIGHT: f64 = 0.0014;
 const POOR: f64 = 0.003;
+/// The same of the mean distance, in which what is off the surface counts.
+const ROUGHER: f64 = 2.5;
 /// What contradicted lines of sight cost, as a multiple of their share.
 const AGAINST: f64 = 3.3;
 /// What a surface that goes on behind something may cost.
@@ -106,6 +108,9 @@ impl Pair<'_> {
     /// How badly a surface explains the worse of both.
     fn cost(&self, fit: &Fit) -> f64 {
         let cost = |piece: &&Piece| {
+            if self.scene.rough(&piece.points, fit) > ROUGHER * piece.rough {
+                return f64::INFINITY;
+            }
             let distance = self.scene.typical(&piece.points, fit);
             let most = (WORSE * piece.own).max(SLIGHT);
             if distance > POOR { f64::INFINITY } else { distance / most }

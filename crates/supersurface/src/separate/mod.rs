@@ -11,6 +11,7 @@ mod bits;
 mod bodies;
 mod clump;
 mod joints;
+mod split;
 mod view;
 
 use std::collections::BTreeMap;
@@ -84,6 +85,8 @@ struct Piece {
     fitted: bool,
     /// Median distance of its points from their own surface, in metres; 0 where they give none.
     own: f64,
+    /// The mean of these distances, none counted for more than 10 mm.
+    rough: f64,
     /// Heights of its lowest, middle and highest points over the support, in metres.
     heights: [f64; 3],
     joined: Vec<Reason>,
@@ -93,8 +96,9 @@ impl Piece {
     fn new(scene: &Around<'_>, clump: usize, points: Vec<u32>, options: &FitOptions) -> Self {
         let fit = scene.fit(&points, options);
         let own = fit.as_ref().map_or(0.0, |f| scene.typical(&points, f));
+        let rough = fit.as_ref().map_or(0.0, |f| scene.rough(&points, f));
         let heights = scene.heights(&points);
-        Self { points, clump, fit, fitted: false, own, heights, joined: Vec::new() }
+        Self { points, clump, fit, fitted: false, own, rough, heights, joined: Vec::new() }
     }
 }
 

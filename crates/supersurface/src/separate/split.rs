@@ -1,0 +1,183 @@
+//! Two things where no edge is concave: a piece that one body explains badly and two bodies explain well.
+//!
+//! Boxes that touch at a corner, a ball on a rim: where the contact is small its patches look like one surface. What tells
+//! is that no body explains the whole. So the patches of a piece are shared out between two bodies, each patch to the one that
+//! it lies on, fitted again and shared out again, as k-means does with points (Bradley and Mangasarian, k-plane clustering, 2000).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::bodies::{Around, QUICK};
+use crate::fit::Fit;
+use crate::segment::{Patches, patches};
+
+/// Mean distance from its surface from which a piece is tried, in metres, and which share of it two surfaces may leave.
+const ROUGH: f64 = 0.0016;
+const LEFT: f64 = 0.45;
+/// Mean distance from its surface up to which a thing is explained well, in metres.
+const WELL: f64 = 0.0014;
+/// Share of a piece's points that each side has at least.
+const SIDE: f64 = 0.05;
+/// Points of the smaller side, at least.
+const LEAST: usize = 150;
+/// Times that the patches are shared out.
+const ROUNDS: usize = 2;
+/// Bend of a concave edge in degrees at which patches hold together by half or so.
+const BEND: f64 = 10.0;
+
+/// The points of two things in a piece, where it is two.
+pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[Vec<u32>; 2]> {
+    let rough = scene.rough(points, whole);
+    if rough < ROUGH {
+        return None;
+    }
+    let patches = patches(scene.cloud, points);
+    let halves = [weakest_link(&patches), halves(&patches), on_and_off(scene, &patches, whole)];
+    let mut best: Option<(f64, Vec<bool>)> = None;
+    for sides in halves.into_iter().flatten() {
+        let Some((left, sides)) = shared_out(scene, &patches, sides) else { continue };
+        if best.as_ref().is_none_or(|(least, _)| left < *least) {
+            best = Some((left, sides));
+        }
+    }
+    let (left, sides) = best?;
+    if !is_better(rough, left) {
+        return None;
+    }
+    let [a, b] = [true, false].map(|side| side_points(&patches, &sides, side));
+    let least = LEAST.max((SIDE * points.len() as f64) as usize);
+    (a.len().min(b.len()) >= least).then_some([a, b])
+}
+
+/// Whether several surfaces, which leave a mean distance, explain what is rough to one.
+pub(super) fn is_better(rough: f64, left: f64) -> bool {
+    left < LEFT * rough && left < WELL
+}
+
+fn side_points(patches: &Patches, sides: &[bool], side: bool) -> Vec<u32> {
+    let of_side = sides.iter().zip(&patches.points).filter(|(s, _)| **s == side);
+    let mut points: Vec<u32> = of_side.flat_map(|(_, points)| points).copied().collect();
+    points.sort_unstable();
+    points
+}
+
+/// The sides after each patch went to the surface that it lies on, a few times, and the mean distance that is left.
+fn shared_out(
+    scene: &Around<'_>,
+    patches: &Patches,
+    mut sides: Vec<bool>,
+) -> Option<(f64, Vec<bool>)> {
+    let mut left = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let [a, b] = [true, false].map(|side| {
+            let points = side_points(patches, &sides, side);
+            scene.fit(&points, &QUICK).ok()
+        });
+        let (a, b) = (a?, b?);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (side, points) in sides.iter_mut().zip(&patches.points).filter(|(_, p)| !p.is_empty()) {
+            let [on_a, on_b] = [&a, &b].map(|fit| scene.rough(points, fit));
+            *side = on_a < on_b;
+            sum += on_a.min(on_b) * points.len() as f64;
+            count += points.len() as f64;
+        }
+        connect(patches, &mut sides);
+        left = sum / f64::max(count, 1.0);
+    }
+    Some((left, sides))
+}
+
+/// Leaves each side its largest connected part.
+fn connect(patches: &Patches, sides: &mut [bool]) {
+    for side in [true, false] {
+        let mut sets = crate::cloud::Sets::new(sides.len());
+        for ([a, b], _) in &patches.borders {
+            let (a, b) = (*a as usize, *b as usize);
+            if sides[a] == side && sides[b] == side {
+                sets.join(a, b);
+            }
+        }
+        let mut sizes = vec![0; sides.len()];
+        for k in (0..sides.len()).filter(|k| sides[*k] == side) {
+            sizes[sets.root(k)] += patches.points[k].len();
+        }
+        let Some(main) = (0..sizes.len()).max_by_key(|k| sizes[*k]) else { return };
+        for k in 0..sides.len() {
+            if sides[k] == side && sets.root(k) != main {
+                sides[k] = !side;
+            }
+        }
+    }
+}
+
+/// The sides of the cut through the fewest and most concave borders, for what it parts (the normalised cut of Shi and Malik,
+/// 2000, along the Fiedler vector).
+fn weakest_link(patches: &Patches) -> Option<Vec<bool>> {
+    let n = patches.patches.len();
+    let mut holds = DMatrix::<f64>::zeros(n, n);
+    for ([a, b], count) in &patches.borders {
+        let (a, b) = (*a as usize, *b as usize);
+        let (p, q) = (&patches.patches[a], &patches.patches[b]);
+        let concave = (p.centre - q.centre).dot(&(p.normal - q.normal)) < 0.0;
+        let bend = if concave { p.normal.angle(&q.normal).to_degrees() } else { 0.0 };
+        let hold = f64::from(*count) * (-(bend / BEND).powi(2)).exp() + 1e-6;
+        holds[(a, b)] = hold;
+        holds[(b, a)] = hold;
+    }
+    let degree: Vec<f64> = (0..n).map(|k| holds.row(k).sum()).collect();
+    if n < 4 || degree.iter().any(|d| *d <= 0.0) {
+        return None;
+    }
+    let scale: Vec<f64> = degree.iter().map(|d| d.sqrt().recip()).collect();
+    let laplace = DMatrix::from_fn(n, n, |a, b| {
+        f64::from(u8::from(a == b)) - holds[(a, b)] * scale[a] * scale[b]
+    });
+    let eigen = laplace.symmetric_eigen();
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let vector: DVector<f64> = eigen.eigenvectors.column(order[1]).into_owned();
+    let at = |k: usize| vector[k] * scale[k];
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|a, b| at(*a).total_cmp(&at(*b)));
+    // the best of all thresholds
+    let all: f64 = degree.iter().sum();
+    let mut inside = vec![false; n];
+    let (mut cut, mut volume) = (0.0, 0.0);
+    let mut best: Option<(f64, usize)> = None;
+    for (k, patch) in order.iter().enumerate().take(n - 1) {
+        for other in 0..n {
+            let hold = holds[(*patch, other)];
+            cut += if inside[other] { -hold } else { hold };
+        }
+        inside[*patch] = true;
+        volume += degree[*patch];
+        let cost = cut / volume + cut / (all - volume);
+        if best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, k));
+        }
+    }
+    let (_, last) = best?;
+    let mut sides = vec![false; n];
+    order[..=last].iter().for_each(|k| sides[*k] = true);
+    Some(sides)
+}
+
+/// The two halves along the longest axis.
+fn halves(patches: &Patches) -> Option<Vec<bool>> {
+    let n = patches.patches.len();
+    let mean = patches.patches.iter().map(|p| p.centre.coords).sum::<crate::Vector>() / n as f64;
+    let spread = patches.patches.iter().map(|p| p.centre.coords - mean).map(|v| v * v.transpose());
+    let eigen = spread.sum::<nalgebra::Matrix3<f64>>().symmetric_eigen();
+    let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
+    (n >= 4).then(|| {
+        patches.patches.iter().map(|p| axis.dot(&(p.centre.coords - mean)) > 0.0).collect()
+    })
+}
+
+/// What lies on a surface and what does not.
+fn on_and_off(scene: &Around<'_>, patches: &Patches, whole: &Fit) -> Option<Vec<bool>> {
+    let far: Vec<f64> = patches.points.iter().map(|p| scene.rough(p, whole)).collect();
+    let mut sorted = far.clone();
+    sorted.sort_by(f64::total_cmp);
+    let middle = *sorted.get(sorted.len() * 6 / 10)?;
+    Some(far.iter().map(|d| *d <= middle).collect())
+}
