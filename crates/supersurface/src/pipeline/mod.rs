@@ -110,7 +110,8 @@ pub fn find(
         Objects::Given => segment_masks(cloud, &options.segment)?,
     };
     progress(Stage::Fit(segmentation.objects.len()));
-    let around = Around { cloud, support: segmentation.support };
+    let (support, noise) = (segmentation.support, segmentation.support_noise);
+    let around = Around { cloud, support, noise };
     let given = |points: &Vec<u32>| {
         let fit = match options.objects {
             Objects::Whole => around.fit_alone(points, &options.fit),

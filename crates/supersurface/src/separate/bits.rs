@@ -11,6 +11,10 @@ use crate::shape::{Plane, SupportMap};
 
 /// Height over the support from which a piece may hang, in metres.
 const ALOFT: f64 = 0.02;
+/// Points of a piece that is no crumb, and its mean distance from its own surface in standard deviations of the support's
+/// points.
+const LARGE: usize = 800;
+const SMOOTH: f64 = 0.8;
 /// Height of the lowest point of a surface that stands on the support, in metres.
 const FOOT: f64 = 0.008;
 /// Share of its neighbour's points up to which a piece is a bit of it: where it hangs, and where it does not.
@@ -65,11 +69,18 @@ pub(super) fn hang_on(
                 && view.hangs(&pieces[k].points, &up)
                 && !stands(&pieces[k], &support)
         };
-        if pairs >= TOUCH && (share < CRUMB || share < HANGING && hangs()) {
+        let crumb = share < CRUMB && !is_thing(scene, &pieces[k], &support);
+        if pairs >= TOUCH && (crumb || share < HANGING && hangs()) {
             sets.join(root, k);
-            reasons.push((k, if share < CRUMB { Reason::Sliver } else { Reason::Hanging }));
+            reasons.push((k, if crumb { Reason::Sliver } else { Reason::Hanging }));
         }
     }
+}
+
+/// Whether a piece that stands on the support is large and smooth enough to be a thing, however large its neighbour is.
+fn is_thing(scene: &Around<'_>, piece: &Piece, support: &Plane) -> bool {
+    let smooth = piece.rough < SMOOTH * scene.noise;
+    piece.points.len() >= LARGE && smooth && stands(piece, support)
 }
 
 /// Whether a piece reaches the support by its own surface, as a ball does whose lowest points are not seen.

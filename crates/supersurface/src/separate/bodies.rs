@@ -23,6 +23,8 @@ pub(crate) struct Around<'a> {
     pub(crate) cloud: &'a PointCloud,
     /// What the objects stand on.
     pub(crate) support: Option<Plane>,
+    /// Standard deviation of the support's points about it, in metres.
+    pub(crate) noise: f64,
 }
 
 impl Around<'_> {

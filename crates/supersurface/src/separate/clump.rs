@@ -84,7 +84,7 @@ fn explains(scene: &Around<'_>, whole: &Fit, parts: &[Piece]) -> bool {
     let mean = |of: &dyn Fn(&Piece) -> f64| {
         parts.iter().map(|p| of(p) * p.points.len() as f64).sum::<f64>() / all
     };
-    if is_better(mean(&|p| scene.rough(&p.points, whole)), mean(&|p| p.rough)) {
+    if is_better(scene, mean(&|p| scene.rough(&p.points, whole)), mean(&|p| p.rough)) {
         return false;
     }
     let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));

@@ -46,7 +46,7 @@ const LEVEL: f64 = 0.2;
 const DENT: f64 = 0.3;
 /// Distance of a piece from a larger one's surface, in metres, up to which both may be one.
 const ON: f64 = 0.008;
-/// What a surface over a dent may cost.
+/// What a surface over a dent or a seam may cost.
 const SHALLOW: f64 = 0.8;
 
 /// All pairs that hold, the best first.
@@ -71,6 +71,7 @@ pub(super) fn joints(
             pair.behind([&outlines[a], &outlines[b]]).map(|cost| (cost, Reason::Behind)),
             pair.hollow().map(|cost| (cost, Reason::Hollow)),
             pair.dent().map(|cost| (cost, Reason::Dent)),
+            pair.unbroken().map(|cost| (cost, Reason::Unbroken)),
         ];
         let best = found.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(cost, reason)| Joint { pieces: [a, b], reason, cost })
@@ -169,6 +170,19 @@ impl Pair<'_> {
         let [small, large] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };
         let on = large.fit.as_ref().is_ok_and(|f| self.scene.typical(&small.points, f) < ON);
         if !on {
+            return None;
+        }
+        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
+    }
+
+    /// Pieces of one surface that noise parted: it goes on from one to the other, and one body explains both.
+    fn unbroken(&self) -> Option<f64> {
+        if self.border.touching <= APART {
+            return None;
+        }
+        let [a, b] = self.pieces.map(|p| &p.points[..]);
+        if self.view.bend(a, b)? < 0.0 {
             return None;
         }
         let fit = self.scene.fit(&self.union(), &QUICK).ok()?;

@@ -34,6 +34,8 @@ pub enum Reason {
     Behind,
     /// One is the inside of the other, seen through its mouth: one body explains both, and shows its inside at one of them.
     Hollow,
+    /// The surface goes on from one to the other: noise parted them, and one body explains both.
+    Unbroken,
     /// The smaller lies in a dent of the larger, and one body explains both.
     Dent,
     /// Nothing carries it but its neighbour: a handle, a spout.
@@ -49,6 +51,7 @@ impl std::fmt::Display for Reason {
             Self::Behind => "behind something nearer",
             Self::Hollow => "its inside",
             Self::Dent => "beside a dent",
+            Self::Unbroken => "no edge between",
             Self::Hanging => "carried by it alone",
             Self::Sliver => "a sliver of it",
         })
@@ -110,7 +113,11 @@ pub fn separate(
     options: &FitOptions,
 ) -> Vec<Thing> {
     let image = segmentation.image();
-    let scene = Around { cloud: image.map_or(cloud, |i| &i.cloud), support: segmentation.support };
+    let scene = Around {
+        cloud: image.map_or(cloud, |i| &i.cloud),
+        support: segmentation.support,
+        noise: segmentation.support_noise,
+    };
     let clumps = each(segmentation.objects.len(), |k| {
         let points = &segmentation.objects[k];
         match image {

@@ -10,11 +10,12 @@ use super::bodies::{Around, QUICK};
 use crate::fit::Fit;
 use crate::segment::{Patches, patches};
 
-/// Mean distance from its surface from which a piece is tried, in metres, and which share of it two surfaces may leave.
-const ROUGH: f64 = 0.0016;
+/// Mean distance from its surface from which a piece is tried, in standard deviations of the support's points, and which share
+/// of it two surfaces may leave.
+const ROUGH: f64 = 1.25;
 const LEFT: f64 = 0.45;
-/// Mean distance from its surface up to which a thing is explained well, in metres.
-const WELL: f64 = 0.0014;
+/// Mean distance from its surface up to which a thing is explained well, in the same.
+const WELL: f64 = 1.1;
 /// Share of a piece's points that each side has at least.
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
@@ -27,7 +28,7 @@ const BEND: f64 = 10.0;
 /// The points of two things in a piece, where it is two.
 pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[Vec<u32>; 2]> {
     let rough = scene.rough(points, whole);
-    if rough < ROUGH {
+    if rough < ROUGH * scene.noise {
         return None;
     }
     let patches = patches(scene.cloud, points);
@@ -40,7 +41,7 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
         }
     }
     let (left, sides) = best?;
-    if !is_better(rough, left) {
+    if !is_better(scene, rough, left) {
         return None;
     }
     let [a, b] = [true, false].map(|side| side_points(&patches, &sides, side));
@@ -49,8 +50,8 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
 }
 
 /// Whether several surfaces, which leave a mean distance, explain what is rough to one.
-pub(super) fn is_better(rough: f64, left: f64) -> bool {
-    left < LEFT * rough && left < WELL
+pub(super) fn is_better(scene: &Around<'_>, rough: f64, left: f64) -> bool {
+    left < LEFT * rough && left < WELL * scene.noise
 }
 
 fn side_points(patches: &Patches, sides: &[bool], side: bool) -> Vec<u32> {

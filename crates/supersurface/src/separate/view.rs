@@ -41,6 +41,11 @@ const TRIED: usize = 300;
 /// Depth under the top of a wall, in metres, to which its rim may be cut off, and lines of sight over it that are looked at.
 const RIM: f64 = 0.012;
 const LOOKED: usize = 60;
+/// Pixels beside a border where its bend is measured, how many are, and the pixels around one that give its normal.
+const ASIDE: usize = 7;
+const BENDS: usize = 60;
+const AROUND: usize = 4;
+
 /// Pairs of neighbouring pixels of two pieces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Border {
@@ -89,6 +94,57 @@ impl<'a> View<'a> {
             }
         }
         out
+    }
+
+    /// How the surface bends where two pieces touch: the mean of `(p - q)·(n - m)/|p - q|` for points on both sides of the border
+    /// with their normals, negative at a concave edge; `None` where they hardly touch.
+    pub(super) fn bend(&self, a: &[u32], b: &[u32]) -> Option<f64> {
+        let (own, other) = (self.owner[*a.first()? as usize], self.owner[*b.first()? as usize]);
+        let owned = |i: Option<usize>, by: u32| {
+            i.filter(|i| self.owner.get(*i).is_some_and(|owner| *owner == by))
+        };
+        let (mut near, mut far) = (Vec::new(), Vec::new());
+        for i in a.iter().map(|i| *i as usize) {
+            for step in [1, self.width] {
+                let ahead = |k: usize| i.checked_add(k * step);
+                let back = |k: usize| i.checked_sub(k * step);
+                let pairs = [
+                    (owned(ahead(1), other), back(ASIDE), ahead(ASIDE)),
+                    (owned(i.checked_sub(step), other), ahead(ASIDE), back(ASIDE)),
+                ];
+                for (next, here, there) in pairs {
+                    let touches =
+                        |j: &usize| (self.points[i] - self.points[*j]).norm() < CONTACT;
+                    if next.filter(touches).is_some()
+                        && let (Some(p), Some(q)) = (owned(here, own), owned(there, other))
+                    {
+                        near.push(p);
+                        far.push(q);
+                    }
+                }
+            }
+        }
+        let step = near.len().div_ceil(BENDS).max(1);
+        let some = near.into_iter().zip(far).step_by(step);
+        let bends = some.filter_map(|(p, q)| {
+            let apart = (self.points[p] - self.points[q]).try_normalize(1e-9)?;
+            Some(apart.dot(&(self.normal(p)? - self.normal(q)?)))
+        });
+        let bends: Vec<f64> = bends.collect();
+        (bends.len() >= 5).then(|| bends.iter().sum::<f64>() / bends.len() as f64)
+    }
+
+    /// The normal towards the eye at a pixel, by those around it of the same piece.
+    fn normal(&self, i: usize) -> Option<Vector> {
+        let owned = |j: Option<usize>| {
+            j.filter(|j| self.owner.get(*j).is_some_and(|owner| *owner == self.owner[i]))
+        };
+        let across = |step: usize| {
+            let (from, to) = (i.checked_sub(step), i.checked_add(step));
+            Some(self.points[owned(to)?] - self.points[owned(from)?])
+        };
+        let normal = across(AROUND)?.cross(&across(AROUND * self.width)?).try_normalize(1e-12)?;
+        Some(normal * (self.eye - self.points[i]).dot(&normal).signum())
     }
 
     /// The pixels at the border of a piece, not too many.
