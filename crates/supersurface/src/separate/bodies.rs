@@ -15,6 +15,8 @@ const FAR: f64 = 0.01;
 
 /// How pieces are fitted.
 pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
+/// How rings among them are.
+pub(super) const RING: FitOptions = FitOptions::only(Family::Supertoroid).quick();
 
 /// What is known of a scene beside the points of an object.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bodies::{Around, QUICK};
+use super::bodies::{Around, QUICK, RING};
 use crate::fit::Fit;
 use crate::segment::{Patches, patches};
 
@@ -14,6 +14,9 @@ use crate::segment::{Patches, patches};
 /// of it two surfaces may leave.
 const ROUGH: f64 = 1.25;
 const LEFT: f64 = 0.45;
+/// The same of two sides that both reach down to the support, as necks and handles do not: to so many metres.
+const LEFT_STANDING: f64 = 0.62;
+const DOWN: f64 = 0.02;
 /// Mean distance from its surface up to which a thing is explained well, in the same.
 const WELL: f64 = 1.1;
 /// Share of a piece's points that each side has at least.
@@ -31,6 +34,10 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
     if rough < ROUGH * scene.noise {
         return None;
     }
+    let smooth = |fit: &Fit| scene.rough(points, fit) < ROUGH * scene.noise;
+    if scene.fit(points, &RING).is_ok_and(|ring| smooth(&ring)) {
+        return None;
+    }
     let patches = patches(scene.cloud, points);
     let halves = [weakest_link(&patches), halves(&patches), on_and_off(scene, &patches, whole)];
     let mut best: Option<(f64, Vec<bool>)> = None;
@@ -41,12 +48,12 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
         }
     }
     let (left, sides) = best?;
-    if !is_better(scene, rough, left) {
-        return None;
-    }
-    let [a, b] = [true, false].map(|side| side_points(&patches, &sides, side));
+    let sides = [true, false].map(|side| side_points(&patches, &sides, side));
     let least = LEAST.max((SIDE * points.len() as f64) as usize);
-    (a.len().min(b.len()) >= least).then_some([a, b])
+    let down = |points: &Vec<u32>| scene.heights(points)[0] < DOWN;
+    let better = is_better(scene, rough, left)
+        || left < LEFT_STANDING * rough && left < WELL * scene.noise && sides.iter().all(down);
+    (better && sides.iter().all(|points| points.len() >= least)).then_some(sides)
 }
 
 /// Whether several surfaces, which leave a mean distance, explain what is rough to one.
@@ -61,30 +68,46 @@ fn side_points(patches: &Patches, sides: &[bool], side: bool) -> Vec<u32> {
     points
 }
 
-/// The sides after each patch went to the surface that it lies on, a few times, and the mean distance that is left.
+/// The sides after each patch went to the surface that it lies on, a few times, or as they were, where that leaves less; and
+/// the mean distance that is left.
 fn shared_out(
     scene: &Around<'_>,
     patches: &Patches,
     mut sides: Vec<bool>,
 ) -> Option<(f64, Vec<bool>)> {
-    let mut left = f64::INFINITY;
-    for _ in 0..ROUNDS {
-        let [a, b] = [true, false].map(|side| {
-            let points = side_points(patches, &sides, side);
-            scene.fit(&points, &QUICK).ok()
-        });
+    let given = sides.clone();
+    let (mut as_given, mut left) = (f64::INFINITY, f64::INFINITY);
+    for round in 0..ROUNDS {
+        let (a, b) = (body(scene, patches, &sides, true), body(scene, patches, &sides, false));
         let (a, b) = (a?, b?);
-        let (mut sum, mut count) = (0.0, 0.0);
+        let (mut own, mut least, mut count) = (0.0, 0.0, 0.0);
         for (side, points) in sides.iter_mut().zip(&patches.points).filter(|(_, p)| !p.is_empty()) {
             let [on_a, on_b] = [&a, &b].map(|fit| scene.rough(points, fit));
+            let weight = points.len() as f64;
+            own += weight * if *side { on_a } else { on_b };
+            least += weight * on_a.min(on_b);
+            count += weight;
             *side = on_a < on_b;
-            sum += on_a.min(on_b) * points.len() as f64;
-            count += points.len() as f64;
         }
         connect(patches, &mut sides);
-        left = sum / f64::max(count, 1.0);
+        left = least / f64::max(count, 1.0);
+        if round == 0 {
+            as_given = own / f64::max(count, 1.0);
+        }
     }
-    Some((left, sides))
+    Some(if as_given < left { (as_given, given) } else { (left, sides) })
+}
+
+/// The surface of a side, a ring where that explains it and a convex body does not.
+fn body(scene: &Around<'_>, patches: &Patches, sides: &[bool], side: bool) -> Option<Fit> {
+    let points = side_points(patches, sides, side);
+    let fit = scene.fit(&points, &QUICK).ok()?;
+    if scene.rough(&points, &fit) < ROUGH * scene.noise {
+        return Some(fit);
+    }
+    let ring = scene.fit(&points, &RING).ok();
+    let ring = ring.filter(|ring| scene.rough(&points, ring) < scene.rough(&points, &fit));
+    Some(ring.unwrap_or(fit))
 }
 
 /// Leaves each side its largest connected part.

@@ -113,8 +113,7 @@ impl<'a> View<'a> {
                     (owned(i.checked_sub(step), other), ahead(ASIDE), back(ASIDE)),
                 ];
                 for (next, here, there) in pairs {
-                    let touches =
-                        |j: &usize| (self.points[i] - self.points[*j]).norm() < CONTACT;
+                    let touches = |j: &usize| (self.points[i] - self.points[*j]).norm() < CONTACT;
                     if next.filter(touches).is_some()
                         && let (Some(p), Some(q)) = (owned(here, own), owned(there, other))
                     {
