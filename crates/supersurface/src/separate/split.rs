@@ -19,6 +19,8 @@ const LEFT_STANDING: f64 = 0.62;
 const DOWN: f64 = 0.02;
 /// Mean distance from its surface up to which a thing is explained well, in the same.
 const WELL: f64 = 1.1;
+/// Mean distance from a ring up to which it is one, in the same.
+const SMOOTH: f64 = 0.9;
 /// Share of a piece's points that each side has at least.
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
@@ -34,7 +36,7 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
     if rough < ROUGH * scene.noise {
         return None;
     }
-    let smooth = |fit: &Fit| scene.rough(points, fit) < ROUGH * scene.noise;
+    let smooth = |fit: &Fit| scene.rough(points, fit) < SMOOTH * scene.noise;
     if scene.fit(points, &RING).is_ok_and(|ring| smooth(&ring)) {
         return None;
     }
