@@ -45,6 +45,7 @@ pub(super) fn finish(
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
     let best = match (terms.sight, cloud.effort) {
         (Sight::OneSide, Effort::Thorough) => pool[0],
+        (Sight::OneSide, Effort::Rough) => return pool[0],
         _ => to_the_end(&pool[0], work),
     };
     let volume = match terms.sight {

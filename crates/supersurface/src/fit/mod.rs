@@ -123,6 +123,8 @@ pub struct FitOptions {
 /// How much time a fit may take: all else is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
+    /// A millisecond or two: few starts and points, to ask whether one surface explains some points.
+    Rough,
     /// A few milliseconds: for the frames of a camera with many objects.
     Quick,
     /// Ten milliseconds or so: more starts and points, and for views a last stage along the rays.
@@ -136,6 +138,11 @@ impl FitOptions {
 
     /// Superellipsoids and supertoroids: what grasp tables know.
     pub const UNDEFORMED: Self = Self::among(&[Family::Superellipsoid, Family::Supertoroid]);
+
+    /// The same in the least time.
+    pub const fn rough(self) -> Self {
+        Self { effort: Effort::Rough, ..self }
+    }
 
     /// The same in less time.
     pub const fn quick(self) -> Self {

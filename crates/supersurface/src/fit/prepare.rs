@@ -12,11 +12,11 @@ use crate::{Point, Vector};
 /// Fewer points than this determine no surface.
 const LEAST_POINTS: usize = 12;
 /// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide
-/// (for both efforts).
+/// (for each effort).
 const SKETCH: usize = 60;
 const COARSE: usize = 160;
-const MIDDLE: [usize; 2] = [240, 400];
-const FINE: [usize; 2] = [600, 2000];
+const MIDDLE: [usize; 3] = [200, 240, 400];
+const FINE: [usize; 3] = [400, 600, 2000];
 /// Share of the points from which a piece is as good as all.
 const WHOLE: f64 = 0.97;
 /// How far before a seen point nothing is, in normalised lengths.

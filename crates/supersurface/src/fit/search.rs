@@ -19,8 +19,8 @@ const MIDDLE_RAYS: usize = 24;
 /// The same beside the coarse set, for rings.
 const COARSE_RAYS: usize = 16;
 /// How many starts of a single view are ranked, and how many of all are refined.
-const SHORTLIST: usize = 8;
-const KEPT: usize = 4;
+const SHORTLIST: [usize; 3] = [4, 8, 8];
+const KEPT: [usize; 3] = [1, 4, 4];
 /// More starts than this are sorted out by a sketch.
 const SKETCHED: usize = 16;
 /// More starts of a single view than this are sorted out on the way.
@@ -29,11 +29,11 @@ const MANY: usize = 36;
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
 pub(super) const EXACT: f64 = 1e-3;
-/// How many times the annealed scale noise may be while starts are ranked (for both efforts): a leash keeps bodies from
+/// How many times the annealed scale noise may be while starts are ranked (for each effort): a leash keeps bodies from
 /// taking outliers for noise, but of things that touch it hides that one body does not explain them.
-const LEASH: [f64; 2] = [f64::INFINITY, 1.5];
-/// How often the near-symmetries are tried (for both efforts).
-const SWITCHES: [usize; 2] = [1, 2];
+const LEASH: [f64; 3] = [f64::INFINITY, f64::INFINITY, 1.5];
+/// How often the near-symmetries are tried (for each effort).
+const SWITCHES: [usize; 3] = [0, 1, 2];
 /// Share of points that a body may leave out before it is asked whether only a part is seen.
 const LEFT_OUT: f64 = 0.2;
 /// How many bodies are looked at to see whether only a part is seen, and the nats by which that must explain the points better.
@@ -85,7 +85,7 @@ fn in_part(
         return None;
     }
     let mut parts = Vec::new();
-    for h in pool.iter().take(if plainly { KEPT } else { DOUBTED }) {
+    for h in pool.iter().take(if plainly { KEPT[cloud.effort as usize] } else { DOUBTED }) {
         let schedule = schedule(8, 0, h.mixture.scale);
         add(&mut parts, refine(h, &cloud.middle, terms, &schedule, work));
     }
@@ -103,22 +103,23 @@ fn search(
     work: &mut Workspace,
 ) {
     let terms = &cloud.terms;
+    let (shortlist, most) = (SHORTLIST[cloud.effort as usize], KEPT[cloud.effort as usize]);
     // among outliers a sketch misleads: there all starts are ranked at once
-    let sketch = terms.sight == Sight::OneSide && cloud.effort == Effort::Quick;
+    let sketch = terms.sight == Sight::OneSide && cloud.effort != Effort::Thorough;
     let holes: &[f64] =
         if terms.sight == Sight::OneSide && !sketch { &[1.0, 0.45] } else { &[1.0] };
     let starts = starts(frames, terms, family, holes);
     let mut ranked: Vec<Hypothesis> = starts.iter().map(|s| begin(s, terms)).collect();
     let half = starts.len().div_ceil(2).max(LEAST_KEPT);
     let rounds: &[(&Sample, usize, usize)] = match (terms.sight, sketch) {
-        (Sight::OneSide, true) => &[(&cloud.sketch, 4, SHORTLIST), (&cloud.coarse, 6, KEPT)],
+        (Sight::OneSide, true) => &[(&cloud.sketch, 4, shortlist), (&cloud.coarse, 6, most)],
         (Sight::OneSide, false) if starts.len() > MANY => {
-            &[(&cloud.coarse, 4, SKETCHED), (&cloud.coarse, 6, KEPT)]
+            &[(&cloud.coarse, 4, SKETCHED), (&cloud.coarse, 6, most)]
         }
-        (Sight::OneSide, false) => &[(&cloud.coarse, 10, KEPT)],
-        _ if starts.len() > SKETCHED => &[(&cloud.sketch, 4, SKETCHED), (&cloud.coarse, 8, KEPT)],
+        (Sight::OneSide, false) => &[(&cloud.coarse, 10, most)],
+        _ if starts.len() > SKETCHED => &[(&cloud.sketch, 4, SKETCHED), (&cloud.coarse, 8, most)],
         // a start that is far behind after a few rounds does not catch up
-        _ => &[(&cloud.coarse, 4, half), (&cloud.coarse, 6, KEPT)],
+        _ => &[(&cloud.coarse, 4, half), (&cloud.coarse, 6, most)],
     };
     // a ring hides its own far wall, which only rays can tell
     let rays = if family.is_ring() && !sketch { COARSE_RAYS } else { 0 };
@@ -144,7 +145,7 @@ fn search(
             let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
             refine(h, &cloud.coarse, terms, &schedule, work)
         }));
-        keep(&mut ranked, KEPT);
+        keep(&mut ranked, most);
     }
     for h in &ranked {
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);

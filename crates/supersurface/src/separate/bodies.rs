@@ -14,9 +14,9 @@ const SOME: usize = 200;
 const FAR: f64 = 0.01;
 
 /// How pieces are fitted.
-pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).quick();
+pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).rough();
 /// How rings among them are.
-pub(super) const RING: FitOptions = FitOptions::only(Family::Supertoroid).quick();
+pub(super) const RING: FitOptions = FitOptions::only(Family::Supertoroid).rough();
 
 /// What is known of a scene beside the points of an object.
 #[derive(Clone, Copy, Debug)]
