@@ -3,7 +3,7 @@
 use crate::camera::{Camera, DepthImage};
 use crate::measure::first_hit;
 use crate::numeric::random::Stream;
-use crate::scene::{Body, DepthNoise, Scene};
+use crate::scene::{DepthNoise, Scene};
 use crate::shape::{Implicit, Posed, Ray};
 use crate::surface::Surface;
 use crate::{Direction, Point, Pose, Vector};
@@ -98,30 +98,51 @@ fn patch_error(i: usize, width: usize, side: usize, seed: u64) -> f64 {
 /// How much each body of a scene shows of what it would show alone: the share of its pixels at which nothing is nearer; 0
 /// for a body outside the image.
 pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64> {
-    let alone = |body: &Body| {
-        let scene = Scene { bodies: vec![body.clone()], ..scene.clone() };
-        let seen = look(&scene, camera, camera_pose, &DepthNoise::none(), 0);
-        seen.labels.iter().filter(|l| **l == 1).count() as f64
+    let [width, height] = camera.size();
+    let targets: Vec<Target<'_>> = scene.bodies.iter().map(|b| Target::new(&b.surface)).collect();
+    // pixels in which each body is seen, and in which it would be
+    let row = |v: usize| {
+        let mut counts = vec![[0u32; 2]; targets.len()];
+        for u in 0..width {
+            let along = camera.unproject(u as f64, v as f64);
+            let seen = see(scene, &targets, camera_pose, along);
+            let ray = ray_along(camera_pose, along);
+            for ((target, count), label) in targets.iter().zip(&mut counts).zip(1..) {
+                let shown = seen.label == label;
+                count[0] += u32::from(shown);
+                count[1] += u32::from(shown || target.meet(&ray, f64::INFINITY).is_some());
+            }
+        }
+        counts
     };
-    let all = look(scene, camera, camera_pose, &DepthNoise::none(), 0);
-    let share = |(k, body): (usize, &Body)| {
-        let shown = all.labels.iter().filter(|l| **l as usize == k + 1).count() as f64;
-        shown / alone(body).max(1.0)
-    };
-    scene.bodies.iter().enumerate().map(share).collect()
+    let rows = gather_by(1, height, row);
+    let sum = |k: usize, of: usize| rows.iter().map(|row| f64::from(row[k][of])).sum::<f64>();
+    (0..targets.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
 }
 
 /// All values of `f` in order, on all cores.
 #[cfg(feature = "parallel")]
 fn gather<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    gather_by(1024, n, f)
+}
+
+/// The same, at least so many on one core.
+#[cfg(feature = "parallel")]
+fn gather_by<T: Send>(least: usize, n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     use rayon::prelude::*;
-    (0..n).into_par_iter().with_min_len(1024).map(f).collect()
+    (0..n).into_par_iter().with_min_len(least).map(f).collect()
 }
 
 /// All values of `f` in order.
 #[cfg(not(feature = "parallel"))]
 fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
     (0..n).map(f).collect()
+}
+
+/// The same.
+#[cfg(not(feature = "parallel"))]
+fn gather_by<T>(_: usize, n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
+    gather(n, f)
 }
 
 impl<'a> Target<'a> {
@@ -149,13 +170,18 @@ impl<'a> Target<'a> {
     }
 }
 
+/// The ray of a pixel in the world; `along` is the point at depth 1 that it passes, in the optical frame.
+fn ray_along(pose: &Pose, along: Vector) -> Ray {
+    Ray {
+        origin: Point::from(pose.translation.vector),
+        direction: Direction::new_normalize(pose.rotation * along),
+    }
+}
+
 /// What a ray meets first; `along` is the point at depth 1 that it passes, in the optical frame.
 fn see(scene: &Scene, targets: &[Target<'_>], pose: &Pose, along: Vector) -> Seen {
     let length = along.norm();
-    let ray = Ray {
-        origin: Point::from(pose.translation.vector),
-        direction: Direction::new_normalize(pose.rotation * along),
-    };
+    let ray = ray_along(pose, along);
     let mut nearest = f64::INFINITY;
     let mut seen = NOTHING;
     let rise = scene.support.normal().dot(&ray.direction);

@@ -41,15 +41,7 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
         return None;
     }
     let patches = patches(scene.cloud, points);
-    let halves = [weakest_link(&patches), halves(&patches), on_and_off(scene, &patches, whole)];
-    let mut best: Option<(f64, Vec<bool>)> = None;
-    for sides in halves.into_iter().flatten() {
-        let Some((left, sides)) = shared_out(scene, &patches, sides) else { continue };
-        if best.as_ref().is_none_or(|(least, _)| left < *least) {
-            best = Some((left, sides));
-        }
-    }
-    let (left, sides) = best?;
+    let (left, sides) = shared_out(scene, &patches, weakest_link(&patches)?)?;
     let sides = [true, false].map(|side| side_points(&patches, &sides, side));
     let least = LEAST.max((SIDE * points.len() as f64) as usize);
     let down = |points: &Vec<u32>| scene.heights(points)[0] < DOWN;
@@ -185,25 +177,4 @@ fn weakest_link(patches: &Patches) -> Option<Vec<bool>> {
     let mut sides = vec![false; n];
     order[..=last].iter().for_each(|k| sides[*k] = true);
     Some(sides)
-}
-
-/// The two halves along the longest axis.
-fn halves(patches: &Patches) -> Option<Vec<bool>> {
-    let n = patches.patches.len();
-    let mean = patches.patches.iter().map(|p| p.centre.coords).sum::<crate::Vector>() / n as f64;
-    let spread = patches.patches.iter().map(|p| p.centre.coords - mean).map(|v| v * v.transpose());
-    let eigen = spread.sum::<nalgebra::Matrix3<f64>>().symmetric_eigen();
-    let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
-    (n >= 4).then(|| {
-        patches.patches.iter().map(|p| axis.dot(&(p.centre.coords - mean)) > 0.0).collect()
-    })
-}
-
-/// What lies on a surface and what does not.
-fn on_and_off(scene: &Around<'_>, patches: &Patches, whole: &Fit) -> Option<Vec<bool>> {
-    let far: Vec<f64> = patches.points.iter().map(|p| scene.rough(p, whole)).collect();
-    let mut sorted = far.clone();
-    sorted.sort_by(f64::total_cmp);
-    let middle = *sorted.get(sorted.len() * 6 / 10)?;
-    Some(far.iter().map(|d| *d <= middle).collect())
 }
