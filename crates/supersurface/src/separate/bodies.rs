@@ -2,7 +2,7 @@
 
 use crate::Point;
 use crate::cloud::PointCloud;
-use crate::fit::{Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
+use crate::fit::{Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
 use crate::shape::{Implicit, Plane};
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
@@ -10,13 +10,15 @@ use crate::shape::{Implicit, Plane};
 const STANDING: f64 = 0.015;
 /// Points at which a surface is compared with what it should explain.
 const SOME: usize = 200;
+/// Points by which a rough fit is made.
+const FEW: usize = 1000;
 /// Farther from a surface than this, in metres, is off it.
 const FAR: f64 = 0.01;
 
 /// How pieces are fitted.
-pub(super) const QUICK: FitOptions = FitOptions::only(Family::Superellipsoid).rough();
+pub(super) const ROUGHLY: FitOptions = FitOptions::only(Family::Superellipsoid).rough();
 /// How rings among them are.
-pub(super) const RING: FitOptions = FitOptions::only(Family::Supertoroid).rough();
+pub(super) const AS_RING: FitOptions = FitOptions::only(Family::Supertoroid).rough();
 
 /// What is known of a scene beside the points of an object.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +56,9 @@ impl Around<'_> {
         free: &[Point],
         options: &FitOptions,
     ) -> Result<Fit, FitError> {
-        let points: Vec<Point> = object.iter().map(|i| self.cloud.points[*i as usize]).collect();
+        let most = if options.effort == Effort::Rough { FEW } else { object.len().max(1) };
+        let some = object.iter().step_by(object.len().div_ceil(most).max(1));
+        let points: Vec<Point> = some.map(|i| self.cloud.points[*i as usize]).collect();
         let heights = |t: &Plane| points.iter().map(|p| t.height(p)).fold(f64::INFINITY, f64::min);
         let standing = self.support.is_some_and(|t| heights(&t) < STANDING);
         fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)

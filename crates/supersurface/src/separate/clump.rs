@@ -1,6 +1,6 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
-use super::bodies::{Around, QUICK};
+use super::bodies::{Around, ROUGHLY, AS_RING};
 use super::split::{is_better, split};
 use super::{Piece, Reason};
 use crate::fit::{Fit, FitOptions};
@@ -18,6 +18,8 @@ const MANY: usize = 12;
 /// that does not matter.
 const WORSE: f64 = 1.3;
 const SLIGHT: f64 = 0.0012;
+/// How many times the mean distance of its parts from their surfaces that of a clump may be, roughly, to be one body.
+const HOPELESS: f64 = 1.8;
 /// The same for a body whose hole is seen: its inside is concave and cut at random. A handle, which it leaves out, has at
 /// most this share of its points.
 const HOLLOW_WORSE: f64 = 1.8;
@@ -46,14 +48,14 @@ pub(super) fn clumped(
     }
     let mut parts: Vec<Piece> = Vec::new();
     while let Some(points) = large.pop() {
-        let piece = Piece::new(scene, clump, points, &QUICK);
+        let piece = Piece::new(scene, clump, points, &ROUGHLY);
         match piece.fit.as_ref().ok().and_then(|fit| split(scene, &piece.points, fit)) {
             Some(sides) => large.extend(sides),
             None => parts.push(piece),
         }
     }
     parts.sort_by_key(|part| part.points[0]);
-    if parts.len() < MANY {
+    if parts.len() < MANY && may_be_one(scene, points, &parts) {
         let all = whole(Some(Reason::Whole));
         if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
             return all;
@@ -72,6 +74,17 @@ pub(super) fn clumped(
         }
     }
     parts
+}
+
+/// False where bodies that were fitted roughly show that none explains all parts of a clump.
+fn may_be_one(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
+    let all = parts.iter().map(|p| p.points.len()).sum::<usize>() as f64;
+    let left = parts.iter().map(|p| p.rough * p.points.len() as f64).sum::<f64>() / all;
+    let most = HOPELESS * left.max(scene.noise);
+    [&ROUGHLY, &AS_RING].into_iter().any(|how| {
+        let fit = scene.fit(points, how);
+        fit.is_ok_and(|fit| scene.rough(points, &fit) < most)
+    })
 }
 
 /// Whether one body explains all parts of a clump.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bodies::{Around, QUICK};
+use super::bodies::{Around, ROUGHLY};
 use super::view::{Border, View};
 use super::{Piece, Reason, each};
 use crate::fit::Fit;
@@ -88,7 +88,7 @@ pub(super) fn is_one(scene: &Around<'_>, pieces: &[&Piece], hollow: bool) -> boo
     }
     let mut points: Vec<u32> = pieces.iter().flat_map(|p| &p.points).copied().collect();
     points.sort_unstable();
-    let fit = if hollow { scene.fit_hollow(&points, &QUICK) } else { scene.fit(&points, &QUICK) };
+    let fit = if hollow { scene.fit_hollow(&points, &ROUGHLY) } else { scene.fit(&points, &ROUGHLY) };
     fit.is_ok_and(|fit| pieces.iter().all(|p| scene.typical(&p.points, &fit) < POOR))
 }
 
@@ -124,7 +124,7 @@ impl Pair<'_> {
         if self.border.touching > APART || !self.view.hides_between(outlines[0], outlines[1]) {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
         let cost = self.cost(&fit);
         if cost > 1.0 {
             return None;
@@ -148,7 +148,7 @@ impl Pair<'_> {
         {
             return None;
         }
-        let fit = self.scene.fit_hollow(&self.union(), &QUICK).ok()?;
+        let fit = self.scene.fit_hollow(&self.union(), &ROUGHLY).ok()?;
         let cost = self.cost(&fit);
         let [a, b] = self.pieces.map(|p| self.view.facing(&fit, &p.points));
         let [inside, outside] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };
@@ -172,7 +172,7 @@ impl Pair<'_> {
         if !on {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
         Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
     }
 
@@ -185,7 +185,7 @@ impl Pair<'_> {
         if self.view.bend(a, b)? < 0.0 {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &QUICK).ok()?;
+        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
         Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
     }
 }

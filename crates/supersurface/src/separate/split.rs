@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bodies::{Around, QUICK, RING};
+use super::bodies::{Around, ROUGHLY, AS_RING};
 use crate::fit::Fit;
 use crate::segment::{Patches, patches};
 
@@ -37,7 +37,7 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
         return None;
     }
     let smooth = |fit: &Fit| scene.rough(points, fit) < SMOOTH * scene.noise;
-    if scene.fit(points, &RING).is_ok_and(|ring| smooth(&ring)) {
+    if scene.fit(points, &AS_RING).is_ok_and(|ring| smooth(&ring)) {
         return None;
     }
     let patches = patches(scene.cloud, points);
@@ -95,11 +95,11 @@ fn shared_out(
 /// The surface of a side, a ring where that explains it and a convex body does not.
 fn body(scene: &Around<'_>, patches: &Patches, sides: &[bool], side: bool) -> Option<Fit> {
     let points = side_points(patches, sides, side);
-    let fit = scene.fit(&points, &QUICK).ok()?;
+    let fit = scene.fit(&points, &ROUGHLY).ok()?;
     if scene.rough(&points, &fit) < ROUGH * scene.noise {
         return Some(fit);
     }
-    let ring = scene.fit(&points, &RING).ok();
+    let ring = scene.fit(&points, &AS_RING).ok();
     let ring = ring.filter(|ring| scene.rough(&points, ring) < scene.rough(&points, &fit));
     Some(ring.unwrap_or(fit))
 }

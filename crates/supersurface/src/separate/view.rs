@@ -172,9 +172,19 @@ impl<'a> View<'a> {
             let (p, q) = (place(*i), place(*j));
             (p[0] - q[0]).hypot(p[1] - q[1])
         };
+        let farthest = FARTHEST * self.width as f64;
+        let boxes = [a, b].map(|outline| {
+            let places = || outline.iter().map(|i| place(*i));
+            let by = |k: usize, f: fn(f64, f64) -> f64| places().map(|p| p[k]).reduce(f);
+            [0, 1].map(|k| [by(k, f64::min), by(k, f64::max)].map(Option::unwrap_or_default))
+        });
+        let gap = |k: usize| (boxes[1][k][0] - boxes[0][k][1]).max(boxes[0][k][0] - boxes[1][k][1]);
+        if gap(0).max(gap(1)) > farthest {
+            return false;
+        }
         let pairs = a.iter().flat_map(|i| b.iter().map(move |j| (i, j, apart(i, j))));
         let Some((i, j, length)) = pairs.min_by(|p, q| p.2.total_cmp(&q.2)) else { return false };
-        if length > FARTHEST * self.width as f64 {
+        if length > farthest {
             return false;
         }
         let (from, to) = (place(*i), place(*j));
