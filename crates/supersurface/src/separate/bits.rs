@@ -37,7 +37,7 @@ pub(super) fn hang_on(
     sets: &mut Sets,
     reasons: &mut Vec<(usize, Reason)>,
 ) {
-    insides(scene, view, pieces, sets, reasons);
+    insides(scene, pieces, sets, reasons);
     let Some(support) = scene.support else { return };
     let up = support.normal();
     let mut smallest: Vec<usize> = (0..pieces.len()).collect();
@@ -92,7 +92,6 @@ fn stands(piece: &Piece, support: &Plane) -> bool {
 /// Joins what the body of a hollow set explains as its inside.
 fn insides(
     scene: &Around<'_>,
-    view: &View<'_>,
     pieces: &[Piece],
     sets: &mut Sets,
     reasons: &mut Vec<(usize, Reason)>,
@@ -110,7 +109,7 @@ fn insides(
             if sets.root(j) != sets.root(k)
                 && piece.clump == pieces[k].clump
                 && scene.typical(&piece.points, &body) < NEAR
-                && (view.facing(&body, &piece.points) <= INSIDE
+                && (scene.facing(&piece.points, &body) <= INSIDE
                     || piece.points.len() as f64 <= RIM * points.len() as f64)
             {
                 sets.join(j, k);

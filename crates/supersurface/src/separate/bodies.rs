@@ -2,7 +2,9 @@
 
 use crate::Point;
 use crate::cloud::PointCloud;
-use crate::fit::{Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points};
+use crate::fit::{
+    Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points,
+};
 use crate::shape::{Implicit, Plane};
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
@@ -80,6 +82,17 @@ impl Around<'_> {
         let some = || points.iter().step_by(points.len().div_ceil(SOME).max(1));
         let sum: f64 = some().map(|i| self.distance(*i, fit).min(FAR)).sum();
         sum / some().count().max(1) as f64
+    }
+
+    /// Share of some points at which a surface faces the sensor; 1 where its place is not known.
+    pub(super) fn facing(&self, points: &[u32], fit: &Fit) -> f64 {
+        let Some(eye) = self.cloud.viewpoint else { return 1.0 };
+        let some = || points.iter().step_by(points.len().div_ceil(SOME).max(1));
+        let faces = |i: &&u32| {
+            let p = &self.cloud.points[**i as usize];
+            fit.surface.gradient(p).dot(&(eye - p)) > 0.0
+        };
+        some().filter(faces).count() as f64 / some().count().max(1) as f64
     }
 
     /// First-order distance `|g - 1|/|∇g|` of a point from a surface, in metres.

@@ -1,6 +1,6 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
-use super::bodies::{Around, ROUGHLY, AS_RING};
+use super::bodies::{Around, ROUGHLY};
 use super::split::{is_better, split};
 use super::{Piece, Reason};
 use crate::fit::{Fit, FitOptions};
@@ -18,8 +18,6 @@ const MANY: usize = 12;
 /// that does not matter.
 const WORSE: f64 = 1.3;
 const SLIGHT: f64 = 0.0012;
-/// How many times the mean distance of its parts from their surfaces that of a clump may be, roughly, to be one body.
-const HOPELESS: f64 = 1.8;
 /// The same for a body whose hole is seen: its inside is concave and cut at random. A handle, which it leaves out, has at
 /// most this share of its points.
 const HOLLOW_WORSE: f64 = 1.8;
@@ -35,7 +33,8 @@ pub(super) fn clumped(
 ) -> Vec<Piece> {
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
-    let (mut large, slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
+    let (mut large, mut slivers): (Vec<_>, Vec<_>) =
+        pieces.into_iter().partition(|p| p.len() >= least);
     let whole = |joined: Option<Reason>| {
         let piece = Piece::new(scene, clump, points.to_vec(), options);
         vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
@@ -45,6 +44,7 @@ pub(super) fn clumped(
         let found = all[0].fit.as_ref().ok().and_then(|fit| split(scene, &all[0].points, fit));
         let Some(sides) = found else { return all };
         large = sides.to_vec();
+        slivers.clear();
     }
     let mut parts: Vec<Piece> = Vec::new();
     while let Some(points) = large.pop() {
@@ -55,7 +55,7 @@ pub(super) fn clumped(
         }
     }
     parts.sort_by_key(|part| part.points[0]);
-    if parts.len() < MANY && may_be_one(scene, points, &parts) {
+    if parts.len() < MANY {
         let all = whole(Some(Reason::Whole));
         if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
             return all;
@@ -74,17 +74,6 @@ pub(super) fn clumped(
         }
     }
     parts
-}
-
-/// False where bodies that were fitted roughly show that none explains all parts of a clump.
-fn may_be_one(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
-    let all = parts.iter().map(|p| p.points.len()).sum::<usize>() as f64;
-    let left = parts.iter().map(|p| p.rough * p.points.len() as f64).sum::<f64>() / all;
-    let most = HOPELESS * left.max(scene.noise);
-    [&ROUGHLY, &AS_RING].into_iter().any(|how| {
-        let fit = scene.fit(points, how);
-        fit.is_ok_and(|fit| scene.rough(points, &fit) < most)
-    })
 }
 
 /// Whether one body explains all parts of a clump.

@@ -1,7 +1,8 @@
 //! Floor 8: things that touch, told apart; pieces of one thing, put together.
 //!
-//! What stands on a support comes as clumps. Each is cut at its concave edges, and pieces are joined again where there is
-//! a reason to and one surface explains them about as well as their own do ([`Reason`]). That alone is no reason: two
+//! What stands on a support comes as clumps. Each is cut at its concave edges, and where two bodies explain a piece that none
+//! explains. Pieces are joined again where there is a reason to and one surface explains them about as well as their own do
+//! ([`Reason`]). That alone is no reason: two
 //! boxes of the same footprint, one on the other, are explained by one box.
 //!
 //! The reasons to join pieces are seen in the image: clouds of several views, which are none, keep their pieces but for
@@ -23,6 +24,9 @@ use crate::fit::{Fit, FitError, FitOptions};
 use crate::segment::{DropReason, Dropped, Frame, Segmentation};
 use clump::clumped;
 use view::View;
+
+/// The least noise that is reckoned with, in metres: bodies are no superellipsoids to the last digit.
+const LEAST_NOISE: f64 = 0.0004;
 
 /// Why pieces between concave edges are one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,7 +120,7 @@ pub fn separate(
     let scene = Around {
         cloud: image.map_or(cloud, |i| &i.cloud),
         support: segmentation.support,
-        noise: segmentation.support_noise,
+        noise: segmentation.support_noise.max(LEAST_NOISE),
     };
     let clumps = each(segmentation.objects.len(), |k| {
         let points = &segmentation.objects[k];

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bodies::{Around, ROUGHLY, AS_RING};
+use super::bodies::{AS_RING, Around, ROUGHLY};
 use crate::fit::Fit;
 use crate::segment::{Patches, patches};
 
@@ -21,6 +21,8 @@ const DOWN: f64 = 0.02;
 const WELL: f64 = 1.1;
 /// Mean distance from a ring up to which it is one, in the same.
 const SMOOTH: f64 = 0.9;
+/// Share of a side's points at which its surface faces the sensor, at least.
+const OUTSIDE: f64 = 0.8;
 /// Share of a piece's points that each side has at least.
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
@@ -47,7 +49,12 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
     let down = |points: &Vec<u32>| scene.heights(points)[0] < DOWN;
     let better = is_better(scene, rough, left)
         || left < LEFT_STANDING * rough && left < WELL * scene.noise && sides.iter().all(down);
-    (better && sides.iter().all(|points| points.len() >= least)).then_some(sides)
+    // an inside is explained by no body from without: cut at random it stays as bad
+    let outside = |points: &Vec<u32>| {
+        let fit = scene.fit(points, &ROUGHLY);
+        fit.is_ok_and(|fit| scene.facing(points, &fit) > OUTSIDE)
+    };
+    (better && sides.iter().all(|side| side.len() >= least && outside(side))).then_some(sides)
 }
 
 /// Whether several surfaces, which leave a mean distance, explain what is rough to one.

@@ -6,7 +6,7 @@ use crate::cloud::PointCloud;
 use crate::fit::Fit;
 use crate::measure::first_hit;
 use crate::segment::hangs;
-use crate::shape::{Implicit, Plane, Ray};
+use crate::shape::{Plane, Ray};
 use crate::{Direction, Point, Vector};
 
 /// An organised cloud whose pixels belong to pieces.
@@ -259,16 +259,6 @@ impl<'a> View<'a> {
             }
         }
         entered > 0 && 10 * at_top > 7 * entered
-    }
-
-    /// Share of some points at which a surface faces the eye.
-    pub(super) fn facing(&self, fit: &Fit, points: &[u32]) -> f64 {
-        let some = || points.iter().step_by(points.len().div_ceil(100).max(1));
-        let faces = |i: &&u32| {
-            let p = &self.points[**i as usize];
-            fit.surface.gradient(p).dot(&(self.eye - p)) > 0.0
-        };
-        some().filter(faces).count() as f64 / some().count().max(1) as f64
     }
 
     /// Whether a piece hangs in the air, as the image tells.

@@ -125,3 +125,19 @@ fn a_neighbours_noise_changes_nothing_far_away() {
     let common = a.iter().filter(|i| b.binary_search(i).is_ok()).count();
     assert!(common as f64 > 0.995 * a.len().max(b.len()) as f64);
 }
+
+#[test]
+fn boxes_that_touch_at_a_corner_are_two() {
+    let turn = std::f64::consts::FRAC_PI_4;
+    let mut found = Vec::new();
+    for (seed, gap) in [(7, 0.0), (8, 0.001), (9, 0.002)] {
+        // the corner of one at the corner of the other
+        let left = brick(-0.055, 0.05, 0.03, [0.05, 0.035, 0.03], 0.0);
+        let reach = 0.04 * 2f64.sqrt();
+        let right = brick(reach - 0.005 + gap, 0.02, 0.03, [0.04, 0.04, 0.03], turn);
+        let (cloud, truth) = seen(vec![left, right], seed);
+        let (objects, _) = parted(&cloud);
+        found.push((objects.len(), [1, 2].map(|k| recovered(&objects, &truth, k))));
+    }
+    assert!(found.iter().all(|(n, r)| *n == 2 && r.iter().all(|r| *r > 0.85)), "{found:?}");
+}
