@@ -107,6 +107,7 @@ fn crowd(seed: u64) -> (PointCloud, Vec<u32>, Vec<f64>) {
 }
 
 #[test]
+#[allow(clippy::print_stdout)]
 fn made_crowds_are_told_apart() {
     let mut sum = [0; 3];
     for seed in 2000..2060 {

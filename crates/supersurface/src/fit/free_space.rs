@@ -35,10 +35,8 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     };
     match (cloud.grid, bounds(cloud, object)) {
         (Some([width, _]), Some([u0, u1, v0, v1])) => {
-            // two readings across a cell are enough
-            let step = (((u1 - u0).max(v1 - v0) as f64 / (4.0 * CELLS)) as usize).max(1);
-            for v in (v0..=v1).step_by(step) {
-                for u in (u0..=u1).step_by(step) {
+            for v in v0..=v1 {
+                for u in u0..=u1 {
                     if let Some(p) = cloud.points.get(v * width + u) {
                         see(p);
                     }

@@ -7,6 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::bodies::{AS_RING, Around, ROUGHLY};
+use crate::cloud::Sets;
 use crate::fit::Fit;
 use crate::segment::{Patches, patches};
 
@@ -17,6 +18,8 @@ const LEFT: f64 = 0.45;
 /// The same of two sides that both reach down to the support, as necks and handles do not: to so many metres.
 const LEFT_STANDING: f64 = 0.62;
 const DOWN: f64 = 0.02;
+/// The same from which nothing is hoped for when the patches were shared out once.
+const HOPELESS: f64 = 0.8;
 /// Mean distance from its surface up to which a thing is explained well, in the same.
 const WELL: f64 = 1.1;
 /// Mean distance from a ring up to which it is one, in the same.
@@ -35,7 +38,8 @@ const BEND: f64 = 10.0;
 /// The points of two things in a piece, where it is two.
 pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[Vec<u32>; 2]> {
     let rough = scene.rough(points, whole);
-    if rough < ROUGH * scene.noise {
+    let small = points.len() < 2 * LEAST;
+    if small || rough < ROUGH * scene.noise || scene.facing(points, whole) < OUTSIDE {
         return None;
     }
     let smooth = |fit: &Fit| scene.rough(points, fit) < SMOOTH * scene.noise;
@@ -43,7 +47,7 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
         return None;
     }
     let patches = patches(scene.cloud, points);
-    let (left, sides) = shared_out(scene, &patches, weakest_link(&patches)?)?;
+    let (left, sides) = shared_out(scene, &patches, weakest_link(&patches)?, rough)?;
     let sides = [true, false].map(|side| side_points(&patches, &sides, side));
     let least = LEAST.max((SIDE * points.len() as f64) as usize);
     let down = |points: &Vec<u32>| scene.heights(points)[0] < DOWN;
@@ -70,11 +74,12 @@ fn side_points(patches: &Patches, sides: &[bool], side: bool) -> Vec<u32> {
 }
 
 /// The sides after each patch went to the surface that it lies on, a few times, or as they were, where that leaves less; and
-/// the mean distance that is left.
+/// the mean distance that is left; `rough` is what one body leaves.
 fn shared_out(
     scene: &Around<'_>,
     patches: &Patches,
     mut sides: Vec<bool>,
+    rough: f64,
 ) -> Option<(f64, Vec<bool>)> {
     let given = sides.clone();
     let (mut as_given, mut left) = (f64::INFINITY, f64::INFINITY);
@@ -94,6 +99,10 @@ fn shared_out(
         left = least / f64::max(count, 1.0);
         if round == 0 {
             as_given = own / f64::max(count, 1.0);
+            // nothing moved, or too much is left to hope for
+            if sides == given || left > HOPELESS * rough {
+                break;
+            }
         }
     }
     Some(if as_given < left { (as_given, given) } else { (left, sides) })
@@ -114,7 +123,7 @@ fn body(scene: &Around<'_>, patches: &Patches, sides: &[bool], side: bool) -> Op
 /// Leaves each side its largest connected part.
 fn connect(patches: &Patches, sides: &mut [bool]) {
     for side in [true, false] {
-        let mut sets = crate::cloud::Sets::new(sides.len());
+        let mut sets = Sets::new(sides.len());
         for ([a, b], _) in &patches.borders {
             let (a, b) = (*a as usize, *b as usize);
             if sides[a] == side && sides[b] == side {
@@ -126,9 +135,9 @@ fn connect(patches: &Patches, sides: &mut [bool]) {
             sizes[sets.root(k)] += patches.points[k].len();
         }
         let Some(main) = (0..sizes.len()).max_by_key(|k| sizes[*k]) else { return };
-        for k in 0..sides.len() {
-            if sides[k] == side && sets.root(k) != main {
-                sides[k] = !side;
+        for (k, own) in sides.iter_mut().enumerate() {
+            if *own == side && sets.root(k) != main {
+                *own = !side;
             }
         }
     }
