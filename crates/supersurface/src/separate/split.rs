@@ -18,11 +18,11 @@ const LEFT: f64 = 0.45;
 /// The same of two sides that both reach down to the support, as necks and handles do not: to so many metres.
 const LEFT_STANDING: f64 = 0.62;
 const DOWN: f64 = 0.02;
-/// The same from which nothing is hoped for when the patches were shared out once.
+/// The share from which nothing is hoped for when the patches were shared out once.
 const HOPELESS: f64 = 0.8;
-/// Mean distance from its surface up to which a thing is explained well, in the same.
+/// Mean distance from its surface up to which a thing is explained well, in standard deviations of the support's points.
 const WELL: f64 = 1.1;
-/// Mean distance from a ring up to which it is one, in the same.
+/// Mean distance from a ring up to which a piece is one, in the same.
 const SMOOTH: f64 = 0.9;
 /// Share of a side's points at which its surface faces the sensor, at least.
 const OUTSIDE: f64 = 0.8;
@@ -30,6 +30,8 @@ const OUTSIDE: f64 = 0.8;
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
 const LEAST: usize = 150;
+/// Patches of a piece that is tried, at most: what is larger than half a metre is no two things to grasp.
+const MOST: usize = 300;
 /// Times that the patches are shared out.
 const ROUNDS: usize = 2;
 /// Bend of a concave edge in degrees at which patches hold together by half or so.
@@ -147,6 +149,9 @@ fn connect(patches: &Patches, sides: &mut [bool]) {
 /// 2000, along the Fiedler vector).
 fn weakest_link(patches: &Patches) -> Option<Vec<bool>> {
     let n = patches.patches.len();
+    if !(4..=MOST).contains(&n) {
+        return None;
+    }
     let mut holds = DMatrix::<f64>::zeros(n, n);
     for ([a, b], count) in &patches.borders {
         let (a, b) = (*a as usize, *b as usize);
@@ -158,7 +163,7 @@ fn weakest_link(patches: &Patches) -> Option<Vec<bool>> {
         holds[(b, a)] = hold;
     }
     let degree: Vec<f64> = (0..n).map(|k| holds.row(k).sum()).collect();
-    if n < 4 || degree.iter().any(|d| *d <= 0.0) {
+    if degree.iter().any(|d| *d <= 0.0) {
         return None;
     }
     let scale: Vec<f64> = degree.iter().map(|d| d.sqrt().recip()).collect();
