@@ -30,7 +30,7 @@ const OUTSIDE: f64 = 0.8;
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
 const LEAST: usize = 150;
-/// Patches of a piece that is tried, at most: what is larger than half a metre is no two things to grasp.
+/// Patches of a piece that is tried, at most, some 0.15 m² of it: the cut takes the cube of their number.
 const MOST: usize = 300;
 /// Times that the patches are shared out.
 const ROUNDS: usize = 2;
