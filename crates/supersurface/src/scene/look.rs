@@ -73,11 +73,12 @@ pub fn look(
         }
         let mut stream = Stream::new(!seed, i as u64);
         let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
+        let kept = stream.uniform();
         let error = match noise.patch {
             0 | 1 => stream.normal(),
             side => patch_error(i, width, side, seed),
         };
-        let z = noise.reading(depth, incidence, edge, error, &mut stream) as f32;
+        let z = noise.reading(depth, incidence, edge, kept, error) as f32;
         (z, if z.is_nan() { 0 } else { label })
     };
     let (depth, labels) = gather(width * height, reading).into_iter().unzip();

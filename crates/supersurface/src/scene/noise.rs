@@ -5,8 +5,6 @@
 //! surfaces err more and give no reading at last; edges are ragged, since a reading belongs to a
 //! patch of pixels.
 
-use crate::numeric::random::Stream;
-
 /// The errors of a depth camera. The default is like a RealSense D435 or a Kinect: 0.7 mm of noise
 /// and steps of 0.6 mm at 0.7 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,16 +74,9 @@ impl DepthNoise {
     }
 
     /// The reading for the true depth `z` in metres on a surface seen under the cosine `incidence`;
-    /// NaN when there is none. `error` is the disparity's in standard deviations.
-    pub(super) fn reading(
-        &self,
-        z: f64,
-        incidence: f64,
-        edge: bool,
-        error: f64,
-        stream: &mut Stream,
-    ) -> f64 {
-        let kept = stream.uniform();
+    /// NaN when there is none. `kept` is uniform in [0, 1), `error` the disparity's in
+    /// standard deviations.
+    pub(super) fn reading(&self, z: f64, incidence: f64, edge: bool, kept: f64, error: f64) -> f64 {
         let faint =
             if self.grazing > 0.0 { (2.0 - incidence / self.grazing).clamp(0.0, 1.0) } else { 0.0 };
         let keep =
@@ -109,6 +100,7 @@ impl DepthNoise {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random::Stream;
 
     #[test]
     fn noise_grows_with_the_square_of_depth() {
@@ -116,8 +108,8 @@ mod tests {
         let spread = |z: f64| {
             let errors = (0..4000).map(|i| {
                 let mut stream = Stream::new(3, i);
-                let error = stream.normal();
-                noise.reading(z, 1.0, false, error, &mut stream) - z
+                let (kept, error) = (stream.uniform(), stream.normal());
+                noise.reading(z, 1.0, false, kept, error) - z
             });
             (errors.map(|e| e * e).sum::<f64>() / 4000.0).sqrt()
         };
@@ -127,8 +119,7 @@ mod tests {
 
     #[test]
     fn nothing_is_read_at_grazing_angles_and_everything_without_noise() {
-        let mut stream = Stream::new(1, 1);
-        assert!(DepthNoise::default().reading(0.7, 0.05, false, 0.0, &mut stream).is_nan());
-        assert_eq!(DepthNoise::none().reading(0.7, 0.01, true, 0.0, &mut stream), 0.7);
+        assert!(DepthNoise::default().reading(0.7, 0.05, false, 0.5, 0.0).is_nan());
+        assert_eq!(DepthNoise::none().reading(0.7, 0.01, true, 0.5, 0.0), 0.7);
     }
 }
