@@ -4,9 +4,10 @@
 //! sum (q - m)(q - m)^T of the points q within a radius, m their mean, turned towards the sensor
 //! (or, without one, away from the cloud's centroid).
 
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::Matrix3;
 
 use crate::cloud::{PointCloud, VoxelGrid};
+use crate::numeric::symmetric::least_axis;
 use crate::{Direction, Point, Vector};
 
 /// Normals at the points named by `indices`, from neighbours within `radius` (metres) among the same
@@ -62,14 +63,8 @@ pub(crate) fn smallest_axis(covariance: &Matrix3<f64>) -> Option<Direction> {
     if !(scale > 0.0 && scale.is_finite()) {
         return None;
     }
-    let eigen = SymmetricEigen::try_new(covariance / scale, f64::EPSILON, 100)?;
-    let mut order = [0, 1, 2];
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    if eigen.eigenvalues[order[1]] < 1e-9 {
-        return None;
-    }
-    let axis = eigen.eigenvectors.column(order[0]).into_owned();
-    axis.norm().is_finite().then(|| Direction::new_normalize(axis))
+    let (values, axis) = least_axis(&(covariance / scale));
+    (values[1] >= 1e-9).then(|| Direction::new_normalize(axis))
 }
 
 #[cfg(test)]

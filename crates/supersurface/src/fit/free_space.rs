@@ -22,6 +22,11 @@ const BORDER: f64 = 14.25;
 /// Points of the cloud that were seen beside the object or behind it, for [`super::View::free`], more of them
 /// the nearer to its outline; none when the viewpoint is not known or lies within the object.
 pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
+    free_points_of(cloud, object, usize::MAX)
+}
+
+/// The same from no more than so many readings on each side of the picture, for a fit that only asks a question.
+pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) -> Vec<Point> {
     let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
     let blocked = picture.dilated(&picture.mask(cloud, object));
     let mut read = vec![None; blocked.len()];
@@ -35,8 +40,9 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     };
     match (cloud.grid, bounds(cloud, object)) {
         (Some([width, _]), Some([u0, u1, v0, v1])) => {
-            for v in v0..=v1 {
-                for u in u0..=u1 {
+            let step = ((u1 - u0).max(v1 - v0) / most).max(1);
+            for v in (v0..=v1).step_by(step) {
+                for u in (u0..=u1).step_by(step) {
                     if let Some(p) = cloud.points.get(v * width + u) {
                         see(p);
                     }
@@ -49,7 +55,7 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     let depths = picture.depths(cloud, object);
     let seen = (0..read.len()).filter_map(|c| read[c].map(|p| (steps[c], p)));
     let gaps = picture
-        .gaps(&blocked, &read, depths[0])
+        .gaps(&steps, &read, depths[0])
         .map(|c| (steps[c], picture.point(c, 3.0 * depths[1])));
     let mut found: Vec<(u16, Point)> = seen.chain(gaps).collect();
     found.sort_by_key(|f| f.0);
@@ -83,6 +89,11 @@ fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
     ])
 }
 
+/// Cells outside next to the object, by their steps.
+fn ring(steps: &[u16]) -> impl Iterator<Item = usize> {
+    (0..steps.len()).filter(|c| (1..=MARGIN as u16).contains(&steps[*c]))
+}
+
 /// Points far behind the outline of an object that nothing hides, for [`super::View::free`]: the body does
 /// not reach beyond what is seen of it. Cells that the object's own points enclose are left out: a hole in
 /// the readings is no hole in the object.
@@ -90,7 +101,8 @@ pub fn outline_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
     let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
     let [_, farthest] = picture.depths(cloud, object);
     let blocked = picture.dilated(&picture.mask(cloud, object));
-    let ring: Vec<usize> = picture.ring(&blocked).collect();
+    let steps = picture.steps_outside(&blocked);
+    let ring: Vec<usize> = ring(&steps).collect();
     let kept = ring.len().min(MOST);
     (0..kept).map(|i| picture.point(ring[i * ring.len() / kept], 3.0 * farthest)).collect()
 }
@@ -188,17 +200,11 @@ impl Picture {
             .fold([f64::INFINITY, 0.0], |[least, most], z| [z.min(least), z.max(most)])
     }
 
-    /// Cells outside next to the blocked ones.
-    fn ring(&self, blocked: &[bool]) -> impl Iterator<Item = usize> + use<> {
-        let steps = self.steps_outside(blocked);
-        (0..steps.len()).filter(move |c| (1..=MARGIN as u16).contains(&steps[*c]))
-    }
-
     /// Cells next to the outline that have no reading, where going on outwards one comes to a reading behind
     /// `nearest`: there the picture is not cut off, and the object is not hidden by something nearer.
     fn gaps<'a>(
         &'a self,
-        blocked: &[bool],
+        steps: &'a [u16],
         read: &'a [Option<Point>],
         nearest: f64,
     ) -> impl Iterator<Item = usize> + 'a {
@@ -214,7 +220,7 @@ impl Picture {
             });
             met.is_some_and(|p| (p - self.viewpoint).dot(&self.forward) > nearest)
         };
-        self.ring(blocked).filter(|c| read[*c].is_none()).filter(is_gap)
+        ring(steps).filter(|c| read[*c].is_none()).filter(is_gap)
     }
 
     /// The point at `depth` along the viewing direction in the middle of a cell.

@@ -58,6 +58,7 @@ mod terms;
 use nalgebra::Isometry3;
 
 pub use covariance::Covariance;
+pub(crate) use free_space::free_points_of;
 pub use free_space::{free_points, outline_points};
 pub use mirror::{Completion, Mirror, mirrored};
 pub use parameters::Family;

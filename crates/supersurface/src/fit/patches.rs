@@ -1,12 +1,11 @@
 //! The neighbourhoods of points: how flat, how dense, which way they face. Surfaces are flat and dense; outliers are
 //! not.
 
-use nalgebra::SymmetricEigen;
-
 use super::centred::scatter;
 use super::neighbours::Neighbours;
 use super::start::quantile;
 use crate::Vector;
+use crate::numeric::symmetric::least_axis;
 
 /// Neighbours that make a neighbourhood.
 const NEIGHBOURS: usize = 12;
@@ -40,15 +39,9 @@ pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
         let near = neighbours.nearest(p, NEIGHBOURS + 1);
         let Some((square, _)) = near.last() else { continue };
         let scatter = scatter(near.iter().map(|n| &among[n.1 as usize]));
-        let eigen = SymmetricEigen::new(scatter);
-        let least = eigen.eigenvalues.imin();
-        let share = eigen.eigenvalues[least] / eigen.eigenvalues.sum().max(1e-300);
-        found.push(Patch {
-            point: *p,
-            normal: eigen.eigenvectors.column(least).into(),
-            flatness: 1.0 - 3.0 * share,
-            radius: square.sqrt(),
-        });
+        let ([least, ..], normal) = least_axis(&scatter);
+        let share = least / scatter.trace().max(1e-300);
+        found.push(Patch { point: *p, normal, flatness: 1.0 - 3.0 * share, radius: square.sqrt() });
     }
     found
 }

@@ -6,13 +6,14 @@
 //! lower score. What a cup carries is limited less by the pull than by the peel: the moment of the object's
 //! weight about the lip.
 
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::Matrix3;
 
 use super::gripper::Cup;
 use super::proposals::{cup_places, upright_tool};
 use super::surroundings::Local;
 use super::tables::CupRow;
 use crate::cloud::VoxelGrid;
+use crate::numeric::symmetric::least_axis;
 use crate::shape::Posed;
 use crate::surface::Surface;
 use crate::{Direction, Point, Pose, Vector};
@@ -139,9 +140,7 @@ fn seal(
     let count = near.len() as f64;
     let mean = near.iter().sum::<Vector>() / count;
     let scatter: Matrix3<f64> = near.iter().map(|d| (d - mean) * (d - mean).transpose()).sum();
-    let eigen = SymmetricEigen::new(scatter / count);
-    let least = eigen.eigenvalues.imin();
-    let axis: Vector = eigen.eigenvectors.column(least).into();
+    let (_, axis) = least_axis(&(scatter / count));
     let normal = if axis.dot(outward) < 0.0 { -axis } else { axis };
     let helper = if normal.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
     let u = (helper - normal * normal.dot(&helper)).normalize();

@@ -8,4 +8,5 @@ pub mod quarter_angle;
 pub mod random;
 pub mod spline;
 pub mod superellipse;
+pub(crate) mod symmetric;
 pub mod tanh_sinh;

@@ -3,7 +3,8 @@
 use crate::Point;
 use crate::cloud::PointCloud;
 use crate::fit::{
-    Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, outline_points,
+    Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, free_points_of,
+    outline_points,
 };
 use crate::shape::{Implicit, Plane};
 
@@ -14,6 +15,10 @@ const STANDING: f64 = 0.015;
 const SOME: usize = 200;
 /// Points by which a rough fit is made.
 const FEW: usize = 1000;
+/// Readings on each side of the picture by which the space about it is known.
+const READINGS: usize = 100;
+/// Points of an object that make its picture whole.
+const SOLID: usize = 4000;
 /// Farther from a surface than this, in metres, is off it.
 const FAR: f64 = 0.01;
 
@@ -36,7 +41,10 @@ pub(crate) struct Around<'a> {
 impl Around<'_> {
     /// The surface of the points named, seen from where the cloud was.
     pub(crate) fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
-        let free = free_points(self.cloud, object);
+        let free = match options.effort {
+            Effort::Rough => free_points_of(self.cloud, &thinned(object, SOLID), READINGS),
+            _ => free_points(self.cloud, object),
+        };
         self.fit_view(object, self.cloud.viewpoint, &free, options)
     }
 
@@ -59,8 +67,8 @@ impl Around<'_> {
         options: &FitOptions,
     ) -> Result<Fit, FitError> {
         let most = if options.effort == Effort::Rough { FEW } else { object.len().max(1) };
-        let some = object.iter().step_by(object.len().div_ceil(most).max(1));
-        let points: Vec<Point> = some.map(|i| self.cloud.points[*i as usize]).collect();
+        let some = thinned(object, most);
+        let points: Vec<Point> = some.iter().map(|i| self.cloud.points[*i as usize]).collect();
         let heights = |t: &Plane| points.iter().map(|p| t.height(p)).fold(f64::INFINITY, f64::min);
         let standing = self.support.is_some_and(|t| heights(&t) < STANDING);
         fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
@@ -111,4 +119,9 @@ impl Around<'_> {
         let middle = distances.len() / 2;
         *distances.select_nth_unstable_by(middle, f64::total_cmp).1
     }
+}
+
+/// At most `most` of the points, evenly spread over their order.
+fn thinned(points: &[u32], most: usize) -> Vec<u32> {
+    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
 }

@@ -14,6 +14,9 @@ const SLIVER: f64 = 0.02;
 const BESIDE: f64 = 0.006;
 /// Pieces from which a clump is no single body.
 const MANY: usize = 12;
+/// How many times farther from a rough convex body than from their own the parts of a clump are at most, that is one body
+/// or a ring.
+const UNLIKE: f64 = 4.5;
 /// How much worse than a piece's own surface that of the whole clump may explain it, and up to which distance in metres
 /// that does not matter.
 const WORSE: f64 = 1.3;
@@ -55,7 +58,7 @@ pub(super) fn clumped(
         }
     }
     parts.sort_by_key(|part| part.points[0]);
-    if parts.len() < MANY {
+    if parts.len() < MANY && is_alike(scene, points, &parts) {
         let all = whole(Some(Reason::Whole));
         if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
             return all;
@@ -74,6 +77,15 @@ pub(super) fn clumped(
         }
     }
     parts
+}
+
+/// Whether a careful fit of one body to all parts of a clump is worth while.
+fn is_alike(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
+    let own: f64 = parts.iter().map(|p| p.rough * p.points.len() as f64).sum();
+    let off = |fit: &Fit| {
+        parts.iter().map(|p| scene.rough(&p.points, fit) * p.points.len() as f64).sum::<f64>()
+    };
+    scene.fit(points, &ROUGHLY).is_ok_and(|fit| off(&fit) < UNLIKE * own)
 }
 
 /// Whether one body explains all parts of a clump.

@@ -25,6 +25,8 @@ const SLIGHT: f64 = 0.0014;
 const POOR: f64 = 0.003;
 /// The same of the mean distance, in which what is off the surface counts.
 const ROUGHER: f64 = 2.5;
+/// Share of what is between two ends of a thing that may be seen to be empty.
+const HOLES: f64 = 0.15;
 /// What contradicted lines of sight cost, as a multiple of their share.
 const AGAINST: f64 = 3.3;
 /// What a surface that goes on behind something may cost.
@@ -125,12 +127,16 @@ impl Pair<'_> {
         if self.border.touching > APART || !self.view.hides_between(outlines[0], outlines[1]) {
             return None;
         }
+        let [a, b] = self.pieces.map(|p| &p.points[..]);
+        if self.view.empty_between(a, b) > HOLES {
+            return None;
+        }
         let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
         let cost = self.cost(&fit);
         if cost > 1.0 {
             return None;
         }
-        let against = self.view.contradicted(&fit, self.pieces.map(|p| &p.points[..]));
+        let against = self.view.contradicted(&fit, [a, b]);
         let cost = cost + AGAINST * against;
         (cost < BEHIND).then_some(cost / BEHIND)
     }

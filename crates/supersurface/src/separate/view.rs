@@ -37,6 +37,8 @@ const EMPTY: f64 = 0.15;
 const BEFORE: f64 = 0.012;
 /// Lines of sight by which a surface is tried.
 const TRIED: usize = 300;
+/// Ways from piece to piece that are looked at.
+const WAYS: usize = 64;
 
 /// Depth under the top of a wall, in metres, to which its rim may be cut off, and lines of sight over it that are looked at.
 const RIM: f64 = 0.012;
@@ -170,7 +172,7 @@ impl<'a> View<'a> {
         };
         let apart = |i: &u32, j: &u32| {
             let (p, q) = (place(*i), place(*j));
-            (p[0] - q[0]).hypot(p[1] - q[1])
+            (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
         };
         let farthest = FARTHEST * self.width as f64;
         let boxes = [a, b].map(|outline| {
@@ -183,7 +185,8 @@ impl<'a> View<'a> {
             return false;
         }
         let pairs = a.iter().flat_map(|i| b.iter().map(move |j| (i, j, apart(i, j))));
-        let Some((i, j, length)) = pairs.min_by(|p, q| p.2.total_cmp(&q.2)) else { return false };
+        let Some((i, j, square)) = pairs.min_by(|p, q| p.2.total_cmp(&q.2)) else { return false };
+        let length = square.sqrt();
         if length > farthest {
             return false;
         }
@@ -205,6 +208,28 @@ impl<'a> View<'a> {
             }
         }
         all > 0.0 && hidden >= HIDDEN * all && empty < EMPTY * all
+    }
+
+    /// Share of the places between two pieces that are seen to be empty: what is convex and has both fills them.
+    pub(super) fn empty_between(&self, a: &[u32], b: &[u32]) -> f64 {
+        let some = |piece: &[u32], k: usize| piece[k * piece.len() / WAYS] as usize;
+        let (mut empty, mut all) = (0.0, 0.0);
+        for k in 0..WAYS {
+            // each of one with a far one of the other's order
+            let [i, j] = [some(a, k), some(b, (k * 37) % WAYS)];
+            let ranges = [i, j].map(|i| self.range(i).recip());
+            for share in [0.25, 0.5, 0.75] {
+                let between = |from: usize, to: usize| {
+                    (from as f64 + share * (to as f64 - from as f64)).round() as usize
+                };
+                let u = between(i % self.width, j % self.width);
+                let v = between(i / self.width, j / self.width);
+                let range = (ranges[0] + share * (ranges[1] - ranges[0])).recip();
+                all += 1.0;
+                empty += f64::from(u8::from(self.range(v * self.width + u) > range + BEFORE));
+            }
+        }
+        empty / all
     }
 
     /// Share of the lines of sight that meet a surface which saw something behind it: those to other pixels than the
