@@ -31,29 +31,46 @@ pub fn normals(cloud: &PointCloud, indices: &[u32], radius: f64) -> Vec<Option<D
     let centroid = Point::from(sum / f64::max(count, 1.0));
     let at = |i: &u32| {
         let p = cloud.points.get(*i as usize)?;
-        let (mut sum, mut square, mut mixed, mut n) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
-        grid.within(p, radius, |j, _| {
-            let d: [f64; 3] = (cloud.points[j as usize] - p).into();
-            for k in 0..3 {
-                sum[k] += d[k];
-                square[k] += d[k] * d[k];
-                mixed[k] += d[(k + 1) % 3] * d[(k + 2) % 3];
-            }
-            n += 1.0;
-        });
-        if n < 6.0 {
-            return None;
-        }
-        let mean = sum.map(|s| s / n);
-        let covariance = Matrix3::from_fn(|i, j| {
-            let product = if i == j { square[i] } else { mixed[3 - i - j] };
-            product / n - mean[i] * mean[j]
-        });
-        let normal = smallest_axis(&covariance)?;
-        let outward = cloud.viewpoint.map_or_else(|| p - centroid, |eye| eye - p);
-        Some(if normal.dot(&outward) < 0.0 { -normal } else { normal })
+        let mut near = Neighbourhood::default();
+        grid.within(p, radius, |j, _| near.add(&(cloud.points[j as usize] - p)));
+        near.normal(&cloud.viewpoint.map_or_else(|| p - centroid, |eye| eye - p))
     };
     indices.iter().map(at).collect()
+}
+
+/// Moments of what is about a point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Neighbourhood {
+    sum: [f64; 3],
+    square: [f64; 3],
+    mixed: [f64; 3],
+    count: f64,
+}
+
+impl Neighbourhood {
+    /// Adds a point, the middle one too, by its place beside that.
+    pub(crate) fn add(&mut self, d: &Vector) {
+        for k in 0..3 {
+            self.sum[k] += d[k];
+            self.square[k] += d[k] * d[k];
+            self.mixed[k] += d[(k + 1) % 3] * d[(k + 2) % 3];
+        }
+        self.count += 1.0;
+    }
+
+    /// The normal that faces outward; `None` of fewer than five neighbours or where they lie on a line.
+    pub(crate) fn normal(&self, outward: &Vector) -> Option<Direction> {
+        if self.count < 6.0 {
+            return None;
+        }
+        let mean = self.sum.map(|s| s / self.count);
+        let covariance = Matrix3::from_fn(|i, j| {
+            let product = if i == j { self.square[i] } else { self.mixed[3 - i - j] };
+            product / self.count - mean[i] * mean[j]
+        });
+        let normal = smallest_axis(&covariance)?;
+        Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
+    }
 }
 
 /// The eigenvector of the smallest eigenvalue of a covariance; `None` when the two smallest are the

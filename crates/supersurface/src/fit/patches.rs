@@ -9,8 +9,7 @@ use crate::numeric::symmetric::least_axis;
 
 /// Neighbours that make a neighbourhood.
 const NEIGHBOURS: usize = 12;
-/// Most points whose neighbourhoods are looked at, and most among which neighbours are sought.
-const LOOKED_AT: usize = 320;
+/// Most points among which neighbours are sought.
 const AMONG: usize = 1600;
 
 /// The neighbourhood of a point.
@@ -25,16 +24,16 @@ pub(super) struct Patch {
     radius: f64,
 }
 
-/// Neighbourhoods spread over the cloud; none for too few points.
-pub(super) fn patches(points: &[Vector]) -> Vec<Patch> {
+/// Neighbourhoods of up to `looked_at` points spread over the cloud; none for too few points.
+pub(super) fn patches(points: &[Vector], looked_at: usize) -> Vec<Patch> {
     if points.len() < 3 * NEIGHBOURS {
         return Vec::new();
     }
     let stride = points.len().div_ceil(AMONG);
     let among: Vec<Vector> = points.iter().step_by(stride).copied().collect();
     let mut neighbours = Neighbours::among(among.iter().copied());
-    let stride = points.len().div_ceil(LOOKED_AT);
-    let mut found = Vec::with_capacity(LOOKED_AT);
+    let stride = points.len().div_ceil(looked_at);
+    let mut found = Vec::with_capacity(looked_at);
     for p in points.iter().step_by(stride) {
         let near = neighbours.nearest(p, NEIGHBOURS + 1);
         let Some((square, _)) = near.last() else { continue };

@@ -4,7 +4,7 @@ use super::centred::{Centred, Placement, axes_of, scatter, spread_over};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
-use super::start::{Frame, frames, quantile};
+use super::start::{Frame, NEIGHBOURHOODS, frames, quantile};
 use super::terms::{Eye, Sight, Support, Terms};
 use super::{Effort, FitError, View};
 use crate::{Point, Vector};
@@ -17,6 +17,8 @@ const SKETCH: usize = 60;
 const COARSE: usize = 160;
 const MIDDLE: [usize; 3] = [200, 240, 400];
 const FINE: [usize; 3] = [400, 600, 2000];
+/// Neighbourhoods by which frames are found (for each effort).
+const LOOKED_AT: [usize; 3] = [100, NEIGHBOURHOODS, NEIGHBOURHOODS];
 /// Share of the points from which a piece is as good as all.
 const WHOLE: f64 = 0.97;
 /// How far before a seen point nothing is, in normalised lengths.
@@ -110,7 +112,7 @@ impl Normalised {
             coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
             middle: all.sample(&places, MIDDLE[effort as usize]),
             fine: fine.sample(&places, total),
-            frames: frames(&start, &terms),
+            frames: frames(&start, &terms, LOOKED_AT[effort as usize]),
             points,
             seen_by,
             terms,

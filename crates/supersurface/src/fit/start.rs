@@ -28,6 +28,8 @@ const TWIST: f64 = 0.12;
 /// Shares of the neighbourhoods: the most flat and dense, and the flattest.
 const FIRM: f64 = 1.0 / 3.0;
 const FLAT: f64 = 0.5;
+/// Neighbourhoods by which a careful fit finds its frames.
+pub(super) const NEIGHBOURHOODS: usize = 320;
 /// Fewer neighbourhoods than this make no frame.
 const LEAST_PATCHES: usize = 8;
 /// Two frames whose axes agree within this cosine are one.
@@ -63,18 +65,18 @@ pub(super) struct Frame {
 /// Frames of points that show all sides, though the cloud does not.
 pub(super) fn whole_frames(points: &[Vector]) -> Vec<Frame> {
     let terms = Terms { sight: Sight::OneSide, ..Terms::default() };
-    let frames = frames(points, &terms).into_iter();
+    let frames = frames(points, &terms, NEIGHBOURHOODS).into_iter();
     frames.map(|f| Frame { whole: true, ..f }).collect()
 }
 
-/// Frames for normalised points, without near duplicates.
-pub(super) fn frames(points: &[Vector], terms: &Terms) -> Vec<Frame> {
+/// Frames for normalised points, without near duplicates, some by up to `looked_at` neighbourhoods.
+pub(super) fn frames(points: &[Vector], terms: &Terms, looked_at: usize) -> Vec<Frame> {
     let mut out = Vec::new();
     if let Some(support) = terms.support {
         push(&mut out, upright(points, &support.normal), points.to_vec(), terms);
     }
     push(&mut out, axes_of(&scatter(points.iter())), points.to_vec(), terms);
-    let patches = patches(points);
+    let patches = patches(points, looked_at);
     let of = |patches: &[Patch]| patches.iter().map(|p| p.point).collect::<Vec<_>>();
     let firm = of(&firmest(&patches, FIRM));
     let flat = flattest(&patches, FLAT);

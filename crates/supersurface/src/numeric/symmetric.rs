@@ -20,20 +20,23 @@ pub(crate) fn least_axis(m: &Matrix3<f64>) -> ([f64; 3], Vector) {
     }
     let cosine = (0.5 * (centred / p).determinant()).clamp(-1.0, 1.0);
     let angle = cosine.acos() / 3.0;
-    let most = q + 2.0 * p * angle.cos();
-    let least = q + 2.0 * p * (angle + 2.0 * PI / 3.0).cos();
-    let values = [least, m.trace() - least - most, most];
-    if cosine < 0.0 {
-        return (values, across(m, least));
-    }
-    // the largest stands apart: the least axis is in the plane across its
-    let apart = across(m, most);
+    let is_least = cosine < 0.0;
+    let turn = if is_least { 2.0 * PI / 3.0 } else { 0.0 };
+    let apart = across(m, q + 2.0 * p * (angle + turn).cos());
+    // the other two by the block in the plane across it, which keeps their digits where they are alike
     let helper = if apart.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
     let u = (helper - apart * apart.dot(&helper)).normalize();
     let w = apart.cross(&u);
     let (mu, mw) = (m * u, m * w);
-    let turn = 0.5 * (2.0 * u.dot(&mw)).atan2(u.dot(&mu) - w.dot(&mw)) + FRAC_PI_2;
-    (values, u * turn.cos() + w * turn.sin())
+    let (middle, half) = (0.5 * (u.dot(&mu) + w.dot(&mw)), 0.5 * (u.dot(&mu) - w.dot(&mw)));
+    let mixed = u.dot(&mw);
+    let spread = (half * half + mixed * mixed).sqrt();
+    let (value, pair) = (apart.dot(&(m * apart)), [middle - spread, middle + spread]);
+    if is_least {
+        return ([value, pair[0], pair[1]], apart);
+    }
+    let turn = 0.5 * mixed.atan2(half) + FRAC_PI_2;
+    ([pair[0], pair[1], value], u * turn.cos() + w * turn.sin())
 }
 
 /// The unit eigenvector of an eigenvalue that no other is near.

@@ -8,7 +8,7 @@
 //! What is cut need not be two things: a handle and a bowl's floor are concave too. So this proposes, and
 //! whoever can say what a thing looks like decides.
 
-use crate::cloud::{PointCloud, Sets, VoxelGrid};
+use crate::cloud::{PointCloud, Sets};
 use crate::segment::patches::{Patch, Patches, SEED, patches};
 
 /// Normals that differ by less than this many degrees belong to one surface.
@@ -20,13 +20,11 @@ const ASTRIDE_TIMES: f64 = 2.0;
 const STEP: f64 = 0.1;
 /// A piece of fewer patches is a crumb of its neighbour.
 const LEAST_PATCHES: usize = 3;
-/// Points that are so far apart, in metres, do not show edges.
-const SPARSE: f64 = 0.004;
 
 /// The pieces of an object between its concave edges, the indices of each in ascending order; one piece where
 /// nothing parts it, where its points are too far apart or the sensor's place is not known.
 pub fn convex_pieces(cloud: &PointCloud, object: &[u32]) -> Vec<Vec<u32>> {
-    if cloud.viewpoint.is_none() || is_sparse(cloud, object) {
+    if cloud.viewpoint.is_none() {
         return vec![object.to_vec()];
     }
     let patches = patches(cloud, object);
@@ -93,10 +91,4 @@ fn is_convex(a: &Patch, b: &Patch) -> bool {
     // one surface lies behind the other where both look the same way
     let step = a.normal.dot(&apart).abs().min(b.normal.dot(&apart).abs());
     step < SEED * (crossing.norm() + STEP)
-}
-
-/// Whether voxels of twice the spacing that shows edges hold fewer than four points on the average.
-fn is_sparse(cloud: &PointCloud, object: &[u32]) -> bool {
-    VoxelGrid::new(&cloud.points, object.iter().copied(), 2.0 * SPARSE)
-        .is_none_or(|grid| object.len() < 4 * grid.occupied())
 }

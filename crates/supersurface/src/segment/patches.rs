@@ -5,7 +5,7 @@
 //! `|p - c|/size + 4 (1 - n·m)`, with `c`, `m` the patch's mean place and normal (Papon et al., CVPR 2013,
 //! without colour).
 
-use crate::cloud::{PointCloud, VoxelGrid, normals};
+use crate::cloud::{Neighbourhood, PointCloud, VoxelGrid};
 use crate::{Point, Vector};
 
 /// Side of a voxel, radius of its normal, and distance of the seeds, in metres.
@@ -14,6 +14,8 @@ const NORMAL_RADIUS: f64 = 0.012;
 pub(crate) const SEED: f64 = 0.022;
 /// Voxels nearer than this are neighbours: those that share a face, an edge or a corner.
 const NEIGHBOUR: f64 = 1.75 * VOXEL;
+/// Points of an occupied voxel, on the average, below which they lie too far apart (some 4 mm) to show edges.
+const SPARSE: f64 = 2.15;
 /// Weight of the normals against space.
 const NORMALS: f64 = 4.0;
 /// Rounds in which the patches settle.
@@ -42,16 +44,20 @@ pub(crate) struct Patches {
 /// What has not been claimed yet.
 const NOBODY: u32 = u32::MAX;
 
-/// The patches of an object; points without a normal go with their neighbours or to none.
+/// The patches of an object; points without a normal go with their neighbours or to none. None where the points are too far
+/// apart.
 pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
     let Some(grid) = VoxelGrid::new(&cloud.points, object.iter().copied(), VOXEL) else {
         return Patches::default();
     };
+    if (object.len() as f64) < SPARSE * grid.occupied() as f64 {
+        return Patches::default();
+    }
     let voxels = Voxels::new(cloud, &grid);
     let (owners, patches) = voxels.claim();
     let mut borders: Vec<[u32; 2]> = Vec::new();
-    for (i, near) in voxels.near.iter().enumerate() {
-        let across = near.iter().map(|j| [owners[i], owners[*j as usize]]);
+    for i in 0..owners.len() {
+        let across = voxels.near(i).iter().map(|j| [owners[i], owners[*j as usize]]);
         borders.extend(across.filter(|[a, b]| a < b && *b != NOBODY));
     }
     borders.sort_unstable();
@@ -68,26 +74,36 @@ pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
 struct Voxels {
     at: Vec<Point>,
     normal: Vec<Option<Vector>>,
-    near: Vec<Vec<u32>>,
+    /// The neighbours of each voxel, one after the other, and where each one's begin.
+    near: Vec<u32>,
+    starts: Vec<usize>,
 }
 
 impl Voxels {
-    fn new(cloud: &PointCloud, grid: &VoxelGrid<'_>) -> Self {
-        let first: Vec<u32> = grid.representatives().collect();
-        let at: Vec<Point> = first.iter().map(|i| cloud.points[*i as usize]).collect();
-        let normal = normals(cloud, &first, NORMAL_RADIUS);
-        let normal = normal.into_iter().map(|n| n.map(|n| n.into_inner())).collect();
-        let mut near = vec![Vec::new(); at.len()];
-        if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, NEIGHBOUR) {
+    fn new(cloud: &PointCloud, grid: &VoxelGrid) -> Self {
+        let at: Vec<Point> = grid.representatives().map(|i| cloud.points[i as usize]).collect();
+        let middle = at.iter().map(|p| p.coords).sum::<Vector>() / at.len().max(1) as f64;
+        let (mut near, mut starts, mut normal) = (Vec::new(), vec![0], Vec::new());
+        if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, NORMAL_RADIUS) {
             for (i, p) in at.iter().enumerate() {
-                cells.within(p, NEIGHBOUR, |j, _| {
-                    if j as usize != i {
-                        near[i].push(j);
+                let mut around = Neighbourhood::default();
+                cells.within(p, NORMAL_RADIUS, |j, square| {
+                    around.add(&(at[j as usize] - p));
+                    if square < NEIGHBOUR * NEIGHBOUR && j as usize != i {
+                        near.push(j);
                     }
                 });
+                starts.push(near.len());
+                let outward = cloud.viewpoint.map_or_else(|| p.coords - middle, |eye| eye - p);
+                normal.push(around.normal(&outward).map(|n| n.into_inner()));
             }
         }
-        Self { at, normal, near }
+        Self { at, normal, near, starts }
+    }
+
+    /// The neighbours of a voxel.
+    fn near(&self, i: usize) -> &[u32] {
+        &self.near[self.starts[i]..self.starts[i + 1]]
     }
 
     /// The patch of each voxel, and the patches.
@@ -139,7 +155,7 @@ impl Voxels {
             let mut next = Vec::new();
             for i in edge {
                 let k = owners[i] as usize;
-                for j in self.near[i].iter().map(|j| *j as usize) {
+                for j in self.near(i).iter().map(|j| *j as usize) {
                     let c = cost(k, j);
                     if c < far[j] {
                         (far[j], owners[j]) = (c, k as u32);
