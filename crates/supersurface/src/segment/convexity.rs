@@ -9,7 +9,7 @@
 //! whoever can say what a thing looks like decides.
 
 use crate::cloud::{PointCloud, Sets};
-use crate::segment::patches::{Patch, Patches, SEED, patches};
+use crate::segment::patches::{Patch, Patches, patches};
 
 /// Normals that differ by less than this many degrees belong to one surface.
 const TOLERANCE: f64 = 15.0;
@@ -43,7 +43,7 @@ fn roots(patches: &Patches) -> Vec<usize> {
     let all = &patches.patches;
     let mut sets = Sets::new(all.len());
     for ([a, b], _) in &patches.borders {
-        if is_convex(&all[*a as usize], &all[*b as usize]) {
+        if is_convex(&all[*a as usize], &all[*b as usize], patches.size) {
             sets.join(*a as usize, *b as usize);
         }
     }
@@ -68,8 +68,8 @@ fn roots(patches: &Patches) -> Vec<usize> {
     }
 }
 
-/// Whether two patches go on in each other or meet at a convex edge.
-fn is_convex(a: &Patch, b: &Patch) -> bool {
+/// Whether two patches of such a size go on in each other or meet at a convex edge.
+fn is_convex(a: &Patch, b: &Patch, size: f64) -> bool {
     let spread = [a, b].map(|p| 1.0 - p.evenness);
     let (least, most) = (spread[0].min(spread[1]), spread[0].max(spread[1]));
     // one that lies across an edge belongs to both sides of it
@@ -90,5 +90,5 @@ fn is_convex(a: &Patch, b: &Patch) -> bool {
     }
     // one surface lies behind the other where both look the same way
     let step = a.normal.dot(&apart).abs().min(b.normal.dot(&apart).abs());
-    step < SEED * (crossing.norm() + STEP)
+    step < size * (crossing.norm() + STEP)
 }

@@ -11,11 +11,15 @@ use crate::{Point, Vector};
 /// Side of a voxel, radius of its normal, and distance of the seeds, in metres.
 const VOXEL: f64 = 0.005;
 const NORMAL_RADIUS: f64 = 0.012;
-pub(crate) const SEED: f64 = 0.022;
+const SEED: f64 = 0.022;
 /// Voxels nearer than this are neighbours: those that share a face, an edge or a corner.
 const NEIGHBOUR: f64 = 1.75 * VOXEL;
 /// Points of an occupied voxel, on the average, below which they lie too far apart (some 4 mm) to show edges.
 const SPARSE: f64 = 2.15;
+/// How many times larger all is where the points lie farther apart, if they are no farther from the sensor than this, in
+/// metres: beyond, its noise, which grows with the square of the distance, hides edges.
+const COARSE: f64 = 1.4;
+const NEAR: f64 = 1.45;
 /// Weight of the normals against space.
 const NORMALS: f64 = 4.0;
 /// Rounds in which the patches settle.
@@ -39,6 +43,8 @@ pub(crate) struct Patches {
     pub(crate) borders: Vec<([u32; 2], u32)>,
     /// The points of each patch.
     pub(crate) points: Vec<Vec<u32>>,
+    /// Distance of their seeds, in metres.
+    pub(crate) size: f64,
 }
 
 /// What has not been claimed yet.
@@ -47,13 +53,14 @@ const NOBODY: u32 = u32::MAX;
 /// The patches of an object; points without a normal go with their neighbours or to none. None where the points are too far
 /// apart.
 pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
-    let Some(grid) = VoxelGrid::new(&cloud.points, object.iter().copied(), VOXEL) else {
-        return Patches::default();
+    let spread = |scale: f64| {
+        let grid = VoxelGrid::new(&cloud.points, object.iter().copied(), scale * VOXEL)?;
+        let dense = object.len() as f64 >= SPARSE * grid.occupied() as f64;
+        dense.then_some((scale, grid))
     };
-    if (object.len() as f64) < SPARSE * grid.occupied() as f64 {
-        return Patches::default();
-    }
-    let voxels = Voxels::new(cloud, &grid);
+    let coarse = || is_near(cloud, object).then(|| spread(COARSE)).flatten();
+    let Some((scale, grid)) = spread(1.0).or_else(coarse) else { return Patches::default() };
+    let voxels = Voxels::new(cloud, &grid, scale);
     let (owners, patches) = voxels.claim();
     let mut borders: Vec<[u32; 2]> = Vec::new();
     for i in 0..owners.len() {
@@ -68,10 +75,19 @@ pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
             points.extend_from_slice(grid.members(c));
         }
     }
-    Patches { patches, borders: counted.collect(), points }
+    Patches { patches, borders: counted.collect(), points, size: scale * SEED }
+}
+
+/// Whether the middle of an object's points is near the sensor.
+fn is_near(cloud: &PointCloud, object: &[u32]) -> bool {
+    let points = object.iter().map(|i| cloud.points[*i as usize].coords);
+    let middle = Point::from(points.sum::<Vector>() / object.len().max(1) as f64);
+    cloud.viewpoint.is_some_and(|eye| (middle - eye).norm() < NEAR)
 }
 
 struct Voxels {
+    /// How many times larger than usual all is.
+    scale: f64,
     at: Vec<Point>,
     normal: Vec<Option<Vector>>,
     /// The neighbours of each voxel, one after the other, and where each one's begin.
@@ -80,16 +96,17 @@ struct Voxels {
 }
 
 impl Voxels {
-    fn new(cloud: &PointCloud, grid: &VoxelGrid) -> Self {
+    fn new(cloud: &PointCloud, grid: &VoxelGrid, scale: f64) -> Self {
+        let (radius, neighbour) = (scale * NORMAL_RADIUS, scale * NEIGHBOUR);
         let at: Vec<Point> = grid.representatives().map(|i| cloud.points[i as usize]).collect();
         let middle = at.iter().map(|p| p.coords).sum::<Vector>() / at.len().max(1) as f64;
         let (mut near, mut starts, mut normal) = (Vec::new(), vec![0], Vec::new());
-        if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, NORMAL_RADIUS) {
+        if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, radius) {
             for (i, p) in at.iter().enumerate() {
                 let mut around = Neighbourhood::default();
-                cells.within(p, NORMAL_RADIUS, |j, square| {
+                cells.within(p, radius, |j, square| {
                     around.add(&(at[j as usize] - p));
-                    if square < NEIGHBOUR * NEIGHBOUR && j as usize != i {
+                    if square < neighbour * neighbour && j as usize != i {
                         near.push(j);
                     }
                 });
@@ -98,7 +115,7 @@ impl Voxels {
                 normal.push(around.normal(&outward).map(|n| n.into_inner()));
             }
         }
-        Self { at, normal, near, starts }
+        Self { scale, at, normal, near, starts }
     }
 
     /// The neighbours of a voxel.
@@ -120,7 +137,9 @@ impl Voxels {
     /// One seed in each occupied cube of the coarse grid: the voxel next to the middle of what is there.
     fn seeds(&self) -> Vec<Patch> {
         let with_normal = (0..self.at.len() as u32).filter(|i| self.normal[*i as usize].is_some());
-        let Some(grid) = VoxelGrid::new(&self.at, with_normal, SEED) else { return Vec::new() };
+        let Some(grid) = VoxelGrid::new(&self.at, with_normal, self.scale * SEED) else {
+            return Vec::new();
+        };
         let seed = |members: &[u32]| {
             let places = || members.iter().map(|i| self.at[*i as usize].coords);
             let mean = Point::from(places().sum::<Vector>() / members.len() as f64);
@@ -139,7 +158,7 @@ impl Voxels {
         let cost = |k: usize, i: usize| {
             let patch = &patches[k];
             let turned = self.normal[i].map_or(0.5, |n| 1.0 - n.dot(&patch.normal));
-            (self.at[i] - patch.centre).norm() / SEED + NORMALS * turned
+            (self.at[i] - patch.centre).norm() / (self.scale * SEED) + NORMALS * turned
         };
         let mut edge: Vec<usize> = Vec::new();
         for (k, patch) in patches.iter().enumerate() {
