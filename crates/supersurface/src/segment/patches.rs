@@ -18,7 +18,7 @@ const NEIGHBOUR: f64 = 1.75 * VOXEL;
 const SPARSE: f64 = 2.15;
 /// How many times larger all is where the points lie farther apart, if they are no farther from the sensor than this, in
 /// metres: beyond, its noise, which grows with the square of the distance, hides edges.
-const COARSE: f64 = 1.4;
+const COARSE: [f64; 2] = [1.4, 2.0];
 const NEAR: f64 = 1.45;
 /// Weight of the normals against space.
 const NORMALS: f64 = 4.0;
@@ -58,7 +58,7 @@ pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
         let dense = object.len() as f64 >= SPARSE * grid.occupied() as f64;
         dense.then_some((scale, grid))
     };
-    let coarse = || is_near(cloud, object).then(|| spread(COARSE)).flatten();
+    let coarse = || COARSE.into_iter().filter(|_| is_near(cloud, object)).find_map(spread);
     let Some((scale, grid)) = spread(1.0).or_else(coarse) else { return Patches::default() };
     let voxels = Voxels::new(cloud, &grid, scale);
     let (owners, patches) = voxels.claim();
