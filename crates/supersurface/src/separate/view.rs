@@ -170,10 +170,6 @@ impl<'a> View<'a> {
             let i = i as usize;
             [(i % self.width) as f64, (i / self.width) as f64]
         };
-        let apart = |i: &u32, j: &u32| {
-            let (p, q) = (place(*i), place(*j));
-            (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
-        };
         let farthest = FARTHEST * self.width as f64;
         let boxes = [a, b].map(|outline| {
             let places = || outline.iter().map(|i| place(*i));
@@ -184,8 +180,24 @@ impl<'a> View<'a> {
         if gap(0).max(gap(1)) > farthest {
             return false;
         }
-        let pairs = a.iter().flat_map(|i| b.iter().map(move |j| (i, j, apart(i, j))));
-        let Some((i, j, square)) = pairs.min_by(|p, q| p.2.total_cmp(&q.2)) else { return false };
+        // the nearest pair; a place is passed over whose way to the other's box is longer
+        let outside = |p: [f64; 2], k: usize| {
+            (boxes[1][k][0] - p[k]).max(p[k] - boxes[1][k][1]).max(0.0).powi(2)
+        };
+        let others: Vec<[f64; 2]> = b.iter().map(|j| place(*j)).collect();
+        let (mut square, mut nearest) = (f64::INFINITY, None);
+        for i in a {
+            let p = place(*i);
+            if outside(p, 0) + outside(p, 1) < square {
+                for (j, q) in b.iter().zip(&others) {
+                    let apart = (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
+                    if apart < square {
+                        (square, nearest) = (apart, Some((i, j)));
+                    }
+                }
+            }
+        }
+        let Some((i, j)) = nearest else { return false };
         let length = square.sqrt();
         if length > farthest {
             return false;
