@@ -1,12 +1,13 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
-use crate::Point;
 use crate::cloud::PointCloud;
 use crate::fit::{
     Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, free_points_of,
     outline_points,
 };
 use crate::shape::{Implicit, Plane};
+use crate::surface::Surface;
+use crate::{Point, Vector};
 
 /// Lowest points of an object nearer to the support than this, in metres, say that it stands there; higher ones may lie on
 /// another object.
@@ -21,6 +22,8 @@ const READINGS: usize = 100;
 const SOLID: usize = 4000;
 /// Farther from a surface than this, in metres, is off it.
 const FAR: f64 = 0.01;
+/// Cosine between an upright ring's axis and the support's normal, at least.
+const UPRIGHT: f64 = 0.7;
 
 /// How pieces are fitted.
 pub(super) const ROUGHLY: FitOptions = FitOptions::only(Family::Superellipsoid).rough();
@@ -101,6 +104,13 @@ impl Around<'_> {
             fit.surface.gradient(p).dot(&(eye - p)) > 0.0
         };
         some().filter(faces).count() as f64 / some().count().max(1) as f64
+    }
+
+    /// True for a ring that lies on its side: the corner between two things looks like the inside of such a pipe.
+    pub(super) fn is_lying_ring(&self, fit: &Fit) -> bool {
+        let axis = fit.surface.pose() * Vector::z();
+        matches!(fit.surface.shape(), Surface::Supertoroid(_))
+            && self.support.is_some_and(|s| axis.dot(&s.normal()).abs() < UPRIGHT)
     }
 
     /// First-order distance `|g - 1|/|∇g|` of a point from a surface, in metres.

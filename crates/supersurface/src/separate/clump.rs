@@ -3,7 +3,6 @@
 use super::bodies::{Around, ROUGHLY};
 use super::split::{is_better, split};
 use super::{Piece, Reason};
-use crate::Vector;
 use crate::fit::{Fit, FitOptions};
 use crate::segment::convex_pieces;
 use crate::surface::Surface;
@@ -27,8 +26,6 @@ const SLIGHT: f64 = 0.0012;
 const HOLLOW_WORSE: f64 = 1.8;
 const HOLLOW_SLIGHT: f64 = 0.0023;
 const HANDLE: f64 = 0.2;
-/// Cosine between such a body's axis and the support's normal, at least.
-const UPRIGHT: f64 = 0.7;
 
 /// The pieces of clump number `clump`; one where there is nothing to cut, fitted as its object will be.
 pub(super) fn clumped(
@@ -94,9 +91,7 @@ fn is_alike(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
 /// Whether one body explains all parts of a clump.
 fn explains(scene: &Around<'_>, whole: &Fit, parts: &[Piece]) -> bool {
     let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
-    // the corner between two things looks like the inside of a pipe that lies there
-    let axis = whole.surface.pose() * Vector::z();
-    if hollow && scene.support.is_some_and(|s| axis.dot(&s.normal()).abs() < UPRIGHT) {
+    if scene.is_lying_ring(whole) {
         return false;
     }
     let unexplained = |worse: f64, slight: f64| {

@@ -26,6 +26,8 @@ const WELL: f64 = 1.1;
 const SMOOTH: f64 = 0.9;
 /// Share of a side's points at which its surface faces the sensor, at least.
 const OUTSIDE: f64 = 0.8;
+/// The same of the body about both sides.
+const PARTLY: f64 = 0.6;
 /// Share of a piece's points that each side has at least.
 const SIDE: f64 = 0.05;
 /// Points of the smaller side, at least.
@@ -39,13 +41,18 @@ const BEND: f64 = 10.0;
 
 /// The points of two things in a piece, where it is two.
 pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[Vec<u32>; 2]> {
+    if scene.is_lying_ring(whole) {
+        let convex = scene.fit(points, &ROUGHLY).ok()?;
+        return split(scene, points, &convex);
+    }
     let rough = scene.rough(points, whole);
     let small = points.len() < 2 * LEAST;
-    if small || rough < ROUGH * scene.noise || scene.facing(points, whole) < OUTSIDE {
+    if small || rough < ROUGH * scene.noise || scene.facing(points, whole) < PARTLY {
         return None;
     }
-    let smooth = |fit: &Fit| scene.rough(points, fit) < SMOOTH * scene.noise;
-    if scene.fit(points, &AS_RING).is_ok_and(|ring| smooth(&ring)) {
+    let is_ring =
+        |fit: &Fit| !scene.is_lying_ring(fit) && scene.rough(points, fit) < SMOOTH * scene.noise;
+    if scene.fit(points, &AS_RING).is_ok_and(|ring| is_ring(&ring)) {
         return None;
     }
     let patches = patches(scene.cloud, points);

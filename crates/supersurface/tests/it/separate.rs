@@ -18,11 +18,15 @@ fn brick(x: f64, y: f64, z: f64, half: [f64; 3], turn: f64) -> Thing {
 
 /// A cloud of things on a table, and the thing that each of its points shows.
 fn seen(things: Vec<Thing>, seed: u64) -> (PointCloud, Vec<Option<usize>>) {
+    seen_by([640, 480], things, seed)
+}
+
+fn seen_by(size: [usize; 2], things: Vec<Thing>, seed: u64) -> (PointCloud, Vec<Option<usize>>) {
     let table = table(PITCH);
     let normal = Direction::new_normalize(table * Vector::z());
     let mut all = vec![Thing::Flat(Plane::through(&Point::from(table.translation.vector), normal))];
     all.extend(things);
-    look_by([640, 480], &all, seed)
+    look_by(size, &all, seed)
 }
 
 fn parted(cloud: &PointCloud) -> (Vec<Object>, Segmentation) {
@@ -140,4 +144,44 @@ fn boxes_that_touch_at_a_corner_are_two() {
         found.push((objects.len(), [1, 2].map(|k| recovered(&objects, &truth, k))));
     }
     assert!(found.iter().all(|(n, r)| *n == 2 && r.iter().all(|r| *r > 0.85)), "{found:?}");
+}
+
+#[test]
+fn a_heap_of_few_pixels_is_told_apart() {
+    for (seed, size) in [(11, [240, 180]), (12, [200, 150])] {
+        let things = vec![
+            brick(-0.1, 0.04, 0.05, [0.06, 0.04, 0.05], 0.1),
+            brick(0.06, 0.03, 0.03, [0.1, 0.05, 0.03], 0.0),
+            brick(0.05, 0.03, 0.09, [0.04, 0.035, 0.03], 0.5),
+        ];
+        let (cloud, truth) = seen_by(size, things, seed);
+        let (objects, _) = parted(&cloud);
+        let shares = [1, 2, 3].map(|k| recovered(&objects, &truth, k));
+        assert!(
+            shares.iter().all(|s| *s > 0.75),
+            "{size:?}: {} objects, {shares:?}",
+            objects.len()
+        );
+    }
+}
+
+#[test]
+fn two_boxes_flush_in_a_corner_are_no_pipe() {
+    for (seed, size) in [(0, [640, 480]), (1, [640, 480]), (0, [320, 240]), (1, [320, 240])] {
+        // a corner that is open towards the sensor, the tops at one height
+        let corner = table(PITCH) * Pose::new(Vector::zeros(), Vector::z() * 0.4);
+        let arm = |x: f64, y: f64, half: [f64; 3]| {
+            Thing::Brick(corner * Pose::translation(x, y, half[2]), Vector::from(half))
+        };
+        let things =
+            vec![arm(0.05, 0.02, [0.05, 0.02, 0.05]), arm(-0.02, -0.03, [0.02, 0.07, 0.05])];
+        let (cloud, truth) = seen_by(size, things, seed);
+        let (objects, _) = parted(&cloud);
+        let shares = [1, 2].map(|k| recovered(&objects, &truth, k));
+        assert!(
+            shares.iter().all(|s| *s > 0.75),
+            "{size:?}: {} objects, {shares:?}",
+            objects.len()
+        );
+    }
 }
