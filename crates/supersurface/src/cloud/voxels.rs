@@ -17,10 +17,9 @@ use crate::cloud::Sets;
 /// assert_eq!(grid.components(), [vec![0, 1], vec![2]]);
 /// ```
 #[derive(Clone, Debug)]
-pub struct VoxelGrid {
+pub struct VoxelGrid<'a> {
+    points: &'a [Point],
     cell: f64,
-    /// The points, in the order of the entries: neighbours lie side by side.
-    places: Vec<Point>,
     /// Indices of the points, cube after cube, rising within each.
     entries: Vec<u32>,
     /// Keys of the cubes that are occupied, rising.
@@ -44,12 +43,12 @@ fn unpack(key: u128) -> Cube {
     [2, 1, 0].map(|k| (key >> (k * BITS)) as i64 & (SIDE - 1))
 }
 
-impl VoxelGrid {
+impl<'a> VoxelGrid<'a> {
     /// Sorts the points named by `indices` into cubes of side `cell` (metres). Points that are not
     /// finite, and indices beyond the points, are left out. `None` unless `cell` is positive and
     /// finite.
     pub fn new(
-        points: &[Point],
+        points: &'a [Point],
         indices: impl IntoIterator<Item = u32>,
         cell: f64,
     ) -> Option<Self> {
@@ -73,9 +72,8 @@ impl VoxelGrid {
             }
         }
         starts.push(sorted.len() as u32);
-        let entries: Vec<u32> = sorted.into_iter().map(|e| e.1).collect();
-        let places = entries.iter().map(|i| points[*i as usize]).collect();
-        Some(Self { cell, places, entries, cubes, starts })
+        let entries = sorted.into_iter().map(|e| e.1).collect();
+        Some(Self { points, cell, entries, cubes, starts })
     }
 
     /// Number of cubes that hold a point.
@@ -105,8 +103,8 @@ impl VoxelGrid {
                 let start = self.cubes.partition_point(|c| *c < first);
                 let count = self.cubes[start..].iter().take_while(|c| **c <= last).count();
                 let [from, to] = [start, start + count].map(|c| self.starts[c] as usize);
-                for (i, q) in self.entries[from..to].iter().zip(&self.places[from..to]) {
-                    let d = (q - p).norm_squared();
+                for i in &self.entries[from..to] {
+                    let d = (self.points[*i as usize] - p).norm_squared();
                     if d <= radius * radius {
                         visit(*i, d);
                     }

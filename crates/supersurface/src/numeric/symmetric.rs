@@ -1,8 +1,8 @@
 //! Eigenvalues of symmetric 3 × 3 matrices in closed form, and the axis of the least, for neighbourhoods by the thousand.
 //!
 //! With `q = tr A/3`, `6p² = tr (A - qI)²` and `cos 3φ = det(A - qI)/2p³`, the eigenvalues are `q + 2p cos(φ + 2πk/3)`
-//! (Smith, Communications of the ACM 4, 1961). The eigenvector of the one that stands apart is the largest cross product of two rows of
-//! `A - λI`; the other two turn in the plane across it.
+//! (Smith, Communications of the ACM 4, 1961). The eigenvector of the one that stands apart is the largest cross product of
+//! two rows of `A - λI`; the other two turn in the plane across it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -96,7 +96,7 @@ struct Voxels {
 }
 
 impl Voxels {
-    fn new(cloud: &PointCloud, grid: &VoxelGrid, scale: f64) -> Self {
+    fn new(cloud: &PointCloud, grid: &VoxelGrid<'_>, scale: f64) -> Self {
         let (radius, neighbour) = (scale * NORMAL_RADIUS, scale * NEIGHBOUR);
         let at: Vec<Point> = grid.representatives().map(|i| cloud.points[i as usize]).collect();
         let middle = at.iter().map(|p| p.coords).sum::<Vector>() / at.len().max(1) as f64;
