@@ -34,6 +34,7 @@ pub use nalgebra;
 pub mod camera;
 pub mod cloud;
 pub mod combine;
+pub mod contact;
 pub mod deform;
 pub mod fit;
 pub mod grasp;

@@ -1,0 +1,56 @@
+//! Where Newton's method stalls: the same pair with rounder bodies first, then sharper ones in steps.
+//!
+//! Flat faces (ε near 0) and sharp edges (ε near 2) are both limits of `k = ε/(2 - ε)`, at 0 and infinity. With `k`
+//! kept in `[1/K, K]` a descent is easy for a small `K`; each next `K` starts where the last ended, faces where the
+//! same point of the face is touched, edges where the last two directions point to, as they move like `1/K`.
+
+use super::chart::Chart;
+use super::descent::{Minimum, descend};
+use super::difference::{Difference, Triple, scaled, sum, unit};
+
+/// The first limit of the powers.
+const FIRST: f64 = 3.0;
+
+/// The minimum below a start, by rounder bodies if need be.
+pub(super) fn settle(pair: &Difference, start: &[Triple; 2]) -> Minimum {
+    let direct = descend(pair, start);
+    if direct.settled {
+        return direct;
+    }
+    let mut best = continued(pair, &direct.normal);
+    if direct.expansion.value < best.expansion.value {
+        best = Minimum { settled: false, ..direct };
+    }
+    best.evaluations += direct.evaluations;
+    best
+}
+
+fn continued(pair: &Difference, start: &[Triple; 2]) -> Minimum {
+    let sharpest = pair.sharpness();
+    let mut limit = FIRST;
+    let mut rounded = pair.rounded(limit);
+    let mut here = descend(&rounded, start);
+    let mut before: Option<(f64, Triple)> = None;
+    let mut evaluations = here.evaluations;
+    while limit < sharpest {
+        let next_limit = (2.0 * limit).min(sharpest);
+        let next = pair.rounded(next_limit);
+        let n = here.normal;
+        let mut guess = Chart::at(&rounded, &n).sharpened(&n, &rounded, &next);
+        if let Some((last_limit, last)) = before {
+            let ahead = (1.0 / next_limit - 1.0 / limit) / (1.0 / limit - 1.0 / last_limit);
+            let moved = sum(&n[0], &scaled(&sum(&n[0], &scaled(&last, -1.0)), ahead));
+            let moved = unit(&moved);
+            let moved = [moved, pair.to_b(&moved)];
+            if next.value(&moved) < next.value(&guess) {
+                guess = moved;
+            }
+        }
+        before = Some((limit, n[0]));
+        (limit, rounded) = (next_limit, next);
+        here = descend(&rounded, &guess);
+        evaluations += here.evaluations;
+    }
+    here.evaluations = evaluations;
+    here
+}

@@ -1,0 +1,178 @@
+//! From a direction down to a minimum of `φ`: Newton's method on the sphere in the chart of flat faces.
+//!
+//! The Riemannian second derivative is the tangential one less `φ` times the metric; where it is not positive
+//! definite it is shifted. Where a step is refused it is shortened, and every other time the majorant's step is
+//! taken, which always descends for exponents up to 1.
+
+use super::chart::{Chart, LONGEST};
+use super::difference::{Difference, Expansion, Triple, dot};
+use crate::numeric::lanes::{Job, dispatch};
+
+/// Evaluations after which a descent gives up.
+const MOST: u32 = 40;
+/// Refused steps after which it does.
+const REFUSALS: i32 = 14;
+/// The support points are to face each other as well as this, in the pair's size.
+const FACING: f64 = 1e-10;
+
+/// Where a descent ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Minimum {
+    /// The direction in both frames.
+    pub(super) normal: [Triple; 2],
+    pub(super) expansion: Expansion,
+    /// False where it gave up.
+    pub(super) settled: bool,
+    /// Evaluations of `φ`.
+    pub(super) evaluations: u32,
+}
+
+impl Minimum {
+    /// Length of the gradient along the sphere, in the pair's size: how far the support points are from facing each
+    /// other.
+    #[inline(always)]
+    pub(super) fn slope(&self) -> f64 {
+        let (gap, n) = (&self.expansion.gap, &self.normal[0]);
+        let along = dot(gap, n);
+        let across = [gap[0] - along * n[0], gap[1] - along * n[1], gap[2] - along * n[2]];
+        dot(&across, &across).sqrt()
+    }
+}
+
+/// What is worked out once at a direction and used for all steps from it.
+struct Plan {
+    newton: [f64; 2],
+    predicted: f64,
+    /// The most that the step can gain.
+    estimate: f64,
+    majorised: Option<[f64; 2]>,
+}
+
+/// The descent from `start`, a direction in both frames.
+pub(super) fn descend(pair: &Difference, start: &[Triple; 2]) -> Minimum {
+    let mut found = None;
+    dispatch(Descent { pair, start, into: &mut found });
+    found.expect("the job ran")
+}
+
+struct Descent<'a> {
+    pair: &'a Difference,
+    start: &'a [Triple; 2],
+    into: &'a mut Option<Minimum>,
+}
+
+impl Job for Descent<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        *self.into = Some(run::<FUSED>(self.pair, self.start));
+    }
+}
+
+#[inline(always)]
+fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
+    let mut here = Minimum {
+        normal: *start,
+        expansion: Expansion::NONE,
+        settled: false,
+        evaluations: 0,
+    };
+    let mut chart = Chart::at(pair, start);
+    let mut trial = *start;
+    let mut plan = Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY, majorised: None };
+    let (mut factor, mut refusals, mut majorised, mut last) = (1.0, 0, false, false);
+    let mut radius = LONGEST;
+    let mut moved = 0.0;
+    loop {
+        let next = Chart::at(pair, &trial);
+        let expansion = pair.expand::<FUSED>(&trial, &next.tangents);
+        here.evaluations += 1;
+        let gained = here.expansion.value - expansion.value;
+        let flat = gained > -4e-16 && plan.estimate * factor < 1e-14;
+        let enough = if majorised { 0.0 } else { 1e-4 * factor * plan.predicted };
+        if gained > enough || flat {
+            let before = here.slope();
+            here.normal = trial;
+            here.expansion = expansion;
+            chart = next;
+            let slope = here.slope();
+            // a step that was expected to gain this little has squared its error
+            let good = !majorised && factor == 1.0 && plan.estimate < 1e-11;
+            if good && slope < 1e-7 || plan.estimate < 1e-14 && slope < FACING {
+                here.settled = true;
+                return here;
+            }
+            plan = self::plan::<FUSED>(&here.expansion, &chart);
+            if plan.estimate < 1e-15 && slope < FACING {
+                here.settled = true;
+                return here;
+            }
+            // two steps that changed nothing
+            let idle = gained.abs() < 4e-16 && slope > 0.5 * before;
+            if idle && last {
+                return here;
+            }
+            last = idle;
+            refusals = 0;
+            radius = LONGEST.min(radius.max(4.0 * moved));
+            factor = (radius / chart.length(&plan.newton)).min(1.0);
+        } else {
+            refusals += 1;
+            factor *= 0.25;
+            radius = chart.length(&plan.newton) * factor;
+        }
+        if here.evaluations >= MOST || refusals > REFUSALS {
+            return here;
+        }
+        majorised = refusals > 0 && refusals % 2 == 0 && plan.majorised.is_some();
+        let by = match plan.majorised {
+            Some(step) if majorised => {
+                let shorter = 0.1f64.powi(refusals / 2 - 1);
+                [step[0] * shorter, step[1] * shorter]
+            }
+            _ => chart.bent::<FUSED>(&[plan.newton[0] * factor, plan.newton[1] * factor]),
+        };
+        moved = chart.length(&by);
+        trial = chart.moved(&here.normal, &by);
+    }
+}
+
+#[inline(always)]
+fn plan<const FUSED: bool>(at: &Expansion, chart: &Chart) -> Plan {
+    let [t, s] = &chart.tangents[0];
+    let gradient = [dot(&at.gap, t), dot(&at.gap, s)];
+    let metric = [dot(t, t), dot(t, s), dot(s, s)];
+    let less = |form: &[f64; 3], value: f64| -> [f64; 3] {
+        [form[0] - value * metric[0], form[1] - value * metric[1], form[2] - value * metric[2]]
+    };
+    let newton = solve(&less(&at.hessian, at.value), &gradient, &chart.lengths);
+    let predicted = -0.5 * (gradient[0] * newton[0] + gradient[1] * newton[1]);
+    let bent = chart.bent::<FUSED>(&newton);
+    let moved = (gradient[0] * bent[0]).abs().max((gradient[1] * bent[1]).abs());
+    let majorant = less(&at.majorant, at.value.min(0.0));
+    let majorised = solve(&majorant, &gradient, &chart.lengths);
+    let finite = majorised[0].is_finite() && majorised[1].is_finite();
+    let majorised = if finite { Some(majorised) } else { None };
+    Plan { newton, predicted, estimate: predicted.max(moved), majorised }
+}
+
+/// `-M⁻¹ g` for a symmetric `M` made positive definite, whose rows may differ by hundreds of magnitudes.
+#[inline(always)]
+fn solve(form: &[f64; 3], gradient: &[f64; 2], lengths: &[f64; 2]) -> [f64; 2] {
+    let scale = [
+        1.0 / form[0].abs().sqrt().max(1e-6 * lengths[0]),
+        1.0 / form[2].abs().sqrt().max(1e-6 * lengths[1]),
+    ];
+    let (mut a, mut c) = (form[0] * scale[0] * scale[0], form[2] * scale[1] * scale[1]);
+    let b = form[1] * scale[0] * scale[1];
+    let (middle, half) = (0.5 * (a + c), 0.5 * (a - c));
+    let spread = (half * half + b * b).sqrt();
+    let least = middle - spread;
+    if least < 1e-10 {
+        let shift = 1.5 * (-least).max(0.0) + 1e-3 * (middle.abs() + spread);
+        a += shift;
+        c += shift;
+    }
+    let g = [gradient[0] * scale[0], gradient[1] * scale[1]];
+    let inverse = 1.0 / (a * c - b * b);
+    [(g[1] * b - g[0] * c) * inverse * scale[0], (g[0] * b - g[1] * a) * inverse * scale[1]]
+}

@@ -1,0 +1,320 @@
+//! The one function of a pair: the support function of the Minkowski difference.
+//!
+//! `φ(n) = h_A(n) + h_B(-n) - n·c` for a unit direction `n` from A to B and the centres `c` apart (FORMULAS §9). Its
+//! least value over the sphere is minus the signed distance: positive depth where the bodies overlap, negative
+//! where they do not. `φ` is convex and 1-homogeneous in `n`, and its gradient is the difference of the two support
+//! points.
+//!
+//! Everything comes from shares. With `u_i = a_i |n_i|`, the inner norm `g = ‖(u1, u2)‖_q2` and `h = ‖(g, u3)‖_q1`,
+//! `s1 = (u1/g)^q2 = 1 - s2` and `S = (g/h)^q1 = 1 - S3` are what each axis contributes: `h = Σ x_i |n_i|` with
+//! `x_i |n_i| = w_i h`, `w = (S s1, S s2, S3)`. For directions `t`, `t'` and the relative rates `ρ_i = t_i/n_i`
+//! the second derivative is
+//! `h [ (q2 - 1) S s1 s2 (ρ1 - ρ2)(ρ1' - ρ2') + (q1 - 1) S S3 (s1 ρ1 + s2 ρ2 - ρ3)(s1 ρ1' + s2 ρ2' - ρ3') ]`.
+//!
+//! Lengths are divided by the pair's size, the mean of the largest semi-axes.
+
+use super::Convex;
+use crate::numeric::lanes::{exp, fused, ln};
+use crate::shape::Posed;
+
+/// A vector as the kernels have it.
+pub(super) type Triple = [f64; 3];
+
+/// `u_i` below this counts as this: what is smaller changes nothing, and its reciprocal is still finite.
+const TINY: f64 = 1e-300;
+
+/// Directions that are evaluated at once.
+pub(super) const BLOCK: usize = 8;
+
+/// Two bodies in A's frame, in units of their size.
+#[derive(Clone, Debug)]
+pub(super) struct Difference {
+    pub(super) semi_axes: [Triple; 2],
+    /// `[q1, q2]` of each body.
+    pub(super) dual: [[f64; 2]; 2],
+    inverse_dual: [[f64; 2]; 2],
+    /// B's axes in A's frame are its columns.
+    pub(super) turn: [Triple; 3],
+    /// B's centre in A's frame.
+    pub(super) centre: Triple,
+    /// Radius of a ball that rolls inside along the whole surface of the sum.
+    pub(super) rolling: f64,
+    /// What a length is divided by, in metres.
+    pub(super) size: f64,
+}
+
+/// `φ` with its derivatives along two tangents.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expansion {
+    pub(super) value: f64,
+    /// Gradient in A's frame: the point of A less that of B that the direction touches.
+    pub(super) gap: Triple,
+    /// Support points in the bodies' own frames; B's as seen along `n`, so that it touches with minus this.
+    pub(super) points: [Triple; 2],
+    /// `[tt, tt', t't']`.
+    pub(super) hessian: [f64; 3],
+    /// The same of a quadratic that lies above `φ`, for exponents up to 1: weights `x_i/n_i`.
+    pub(super) majorant: [f64; 3],
+}
+
+impl Expansion {
+    /// Before the first evaluation: everything is lower.
+    pub(super) const NONE: Self = Self {
+        value: f64::INFINITY,
+        gap: [0.0; 3],
+        points: [[0.0; 3]; 2],
+        hessian: [0.0; 3],
+        majorant: [0.0; 3],
+    };
+}
+
+/// `φ` and its gradient in A's frame for a block of directions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Values {
+    pub(super) value: [f64; BLOCK],
+    pub(super) gradient: [[f64; BLOCK]; 3],
+}
+
+/// Support functions and shares of `N` bodies or directions.
+struct Shares<const N: usize> {
+    support: [f64; N],
+    inner: [[f64; N]; 2],
+    outer: [[f64; N]; 2],
+}
+
+/// From `u`; `q` and `r = 1/q` as `[q1, q2]`.
+#[inline(always)]
+fn shares<const FUSED: bool, const N: usize>(
+    u: &[[f64; N]; 3],
+    q: &[[f64; N]; 2],
+    r: &[[f64; N]; 2],
+) -> Shares<N> {
+    let mut logs = [[0.0; N]; 3];
+    for k in 0..3 {
+        for i in 0..N {
+            logs[k][i] = ln::<FUSED>(u[k][i]);
+        }
+    }
+    let (norm, inner) = norm_of_logs::<FUSED, N>(&logs[0], &logs[1], &q[1], &r[1]);
+    let (norm, outer) = norm_of_logs::<FUSED, N>(&norm, &logs[2], &q[0], &r[0]);
+    let mut support = [0.0; N];
+    for i in 0..N {
+        support[i] = exp::<FUSED>(norm[i]);
+    }
+    Shares { support, inner, outer }
+}
+
+/// Logarithm of the q-norm of two numbers given by their logarithms, and the share of each in its q-th power.
+#[inline(always)]
+fn norm_of_logs<const FUSED: bool, const N: usize>(
+    x: &[f64; N],
+    y: &[f64; N],
+    q: &[f64; N],
+    r: &[f64; N],
+) -> ([f64; N], [[f64; N]; 2]) {
+    let (mut norm, mut shares) = ([0.0; N], [[0.0; N]; 2]);
+    for i in 0..N {
+        let (high, low) = if x[i] > y[i] { (x[i], y[i]) } else { (y[i], x[i]) };
+        let ratio = exp::<FUSED>(q[i] * (low - high));
+        let sum = 1.0 + ratio;
+        norm[i] = fused::<FUSED>(ln::<FUSED>(sum), r[i], high);
+        let (large, small) = (1.0 / sum, ratio / sum);
+        shares[0][i] = if x[i] > y[i] { large } else { small };
+        shares[1][i] = if x[i] > y[i] { small } else { large };
+    }
+    (norm, shares)
+}
+
+impl Difference {
+    pub(super) fn new(a: &Posed<Convex>, b: &Posed<Convex>) -> Self {
+        let axes = [a, b].map(|body| body.shape().shape().semi_axes());
+        let [largest_a, largest_b] = axes.map(|a| a[0].max(a[1]).max(a[2]));
+        let size = 0.5 * largest_a + 0.5 * largest_b;
+        let back = a.pose().rotation.inverse();
+        let turn = (back * b.pose().rotation).to_rotation_matrix();
+        // the difference first: bodies far from the origin
+        let apart = back * (b.pose().translation.vector - a.pose().translation.vector);
+        Self {
+            semi_axes: axes.map(|a| a.map(|v| v / size)),
+            dual: [a.shape().dual, b.shape().dual],
+            inverse_dual: [a.shape().inverse_dual, b.shape().inverse_dual],
+            turn: std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)])),
+            centre: std::array::from_fn(|k| apart[k] / size),
+            rolling: (a.shape().rolling + b.shape().rolling) / size,
+            size,
+        }
+    }
+
+    /// The largest `k = q - 1` or `1/k` of the bodies.
+    pub(super) fn sharpness(&self) -> f64 {
+        self.dual.iter().flatten().map(|q| (q - 1.0).max(1.0 / (q - 1.0))).fold(1.0, f64::max)
+    }
+
+    /// The same pair with every `k = q - 1` kept in `[1/limit, limit]`.
+    pub(super) fn rounded(&self, limit: f64) -> Self {
+        let dual = self.dual.map(|q| q.map(|q| 1.0 + (q - 1.0).clamp(1.0 / limit, limit)));
+        Self { dual, inverse_dual: dual.map(|q| q.map(f64::recip)), ..self.clone() }
+    }
+
+    /// `φ` at one direction.
+    pub(super) fn value(&self, n: &[Triple; 2]) -> f64 {
+        self.expand::<false>(n, &[[[0.0; 3]; 2]; 2]).value
+    }
+
+    /// A vector of A's frame in B's.
+    #[inline(always)]
+    pub(super) fn to_b(&self, v: &Triple) -> Triple {
+        let [r, s, t] = &self.turn;
+        [
+            r[0] * v[0] + s[0] * v[1] + t[0] * v[2],
+            r[1] * v[0] + s[1] * v[1] + t[1] * v[2],
+            r[2] * v[0] + s[2] * v[1] + t[2] * v[2],
+        ]
+    }
+
+    /// A vector of B's frame in A's.
+    #[inline(always)]
+    pub(super) fn to_a(&self, v: &Triple) -> Triple {
+        [dot(&self.turn[0], v), dot(&self.turn[1], v), dot(&self.turn[2], v)]
+    }
+
+    /// `φ` at a unit direction, given in both frames, with its derivatives along two tangents, given in both too.
+    #[inline(always)]
+    pub(super) fn expand<const FUSED: bool>(
+        &self,
+        n: &[Triple; 2],
+        tangents: &[[Triple; 2]; 2],
+    ) -> Expansion {
+        let mut u = [[0.0; 2]; 3];
+        for (b, n) in n.iter().enumerate() {
+            for k in 0..3 {
+                u[k][b] = (self.semi_axes[b][k] * n[k].abs()).max(TINY);
+            }
+        }
+        let by_body = |v: &[[f64; 2]; 2]| [[v[0][0], v[1][0]], [v[0][1], v[1][1]]];
+        let found = shares::<FUSED, 2>(&u, &by_body(&self.dual), &by_body(&self.inverse_dual));
+        let mut points = [[0.0; 3]; 2];
+        let (mut hessian, mut majorant) = ([0.0; 3], [0.0; 3]);
+        for b in 0..2 {
+            let [s1, s2] = [found.inner[0][b], found.inner[1][b]];
+            let [whole, s3] = [found.outer[0][b], found.outer[1][b]];
+            let h = found.support[b];
+            let weights = [whole * s1, whole * s2, s3];
+            // a_i/u_i with n's sign, so that ρ_i = t_i scaled_i
+            let mut scaled = [0.0; 3];
+            let mut rates = [[0.0; 3]; 2];
+            for k in 0..3 {
+                scaled[k] = (self.semi_axes[b][k] / u[k][b]).copysign(n[b][k]);
+                points[b][k] = h * weights[k] * scaled[k];
+                rates[0][k] = tangents[b][0][k] * scaled[k];
+                rates[1][k] = tangents[b][1][k] * scaled[k];
+            }
+            let inner = [rates[0][0] - rates[0][1], rates[1][0] - rates[1][1]];
+            let outer = [
+                fused::<FUSED>(s1, rates[0][0], s2 * rates[0][1]) - rates[0][2],
+                fused::<FUSED>(s1, rates[1][0], s2 * rates[1][1]) - rates[1][2],
+            ];
+            let c2 = h * (self.dual[b][1] - 1.0) * whole * s1 * s2;
+            let c1 = h * (self.dual[b][0] - 1.0) * whole * s3;
+            for (m, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+                hessian[m] += c2 * inner[i] * inner[j] + c1 * outer[i] * outer[j];
+                majorant[m] += h
+                    * (weights[0] * rates[i][0] * rates[j][0]
+                        + weights[1] * rates[i][1] * rates[j][1]
+                        + weights[2] * rates[i][2] * rates[j][2]);
+            }
+        }
+        let far = self.to_a(&points[1]);
+        let gap = difference(&sum(&points[0], &far), &self.centre);
+        let value = found.support[0] + found.support[1] - dot(&n[0], &self.centre);
+        Expansion { value, gap, points, hessian, majorant }
+    }
+
+    /// `φ` and its gradient for a block of unit directions of A's frame.
+    #[inline(always)]
+    pub(super) fn values<const FUSED: bool>(&self, n: &[[f64; BLOCK]; 3]) -> Values {
+        let mut value = [0.0; BLOCK];
+        let mut gradient = [[0.0; BLOCK]; 3];
+        for b in 0..2 {
+            let mut local = *n;
+            if b == 1 {
+                for k in 0..3 {
+                    for i in 0..BLOCK {
+                        local[k][i] = self.turn[0][k] * n[0][i]
+                            + self.turn[1][k] * n[1][i]
+                            + self.turn[2][k] * n[2][i];
+                    }
+                }
+            }
+            let mut u = [[0.0; BLOCK]; 3];
+            for k in 0..3 {
+                for i in 0..BLOCK {
+                    u[k][i] = (self.semi_axes[b][k] * local[k][i].abs()).max(TINY);
+                }
+            }
+            let q = [[self.dual[b][0]; BLOCK], [self.dual[b][1]; BLOCK]];
+            let r = [[self.inverse_dual[b][0]; BLOCK], [self.inverse_dual[b][1]; BLOCK]];
+            let found = shares::<FUSED, BLOCK>(&u, &q, &r);
+            let mut x = [[0.0; BLOCK]; 3];
+            for i in 0..BLOCK {
+                let planar = found.support[i] * found.outer[0][i];
+                let along = [
+                    planar * found.inner[0][i],
+                    planar * found.inner[1][i],
+                    found.support[i] * found.outer[1][i],
+                ];
+                for k in 0..3 {
+                    x[k][i] = (self.semi_axes[b][k] * along[k] / u[k][i]).copysign(local[k][i]);
+                }
+                value[i] += found.support[i];
+            }
+            for k in 0..3 {
+                for i in 0..BLOCK {
+                    gradient[k][i] += match b {
+                        0 => x[k][i] - self.centre[k],
+                        _ => {
+                            self.turn[k][0] * x[0][i]
+                                + self.turn[k][1] * x[1][i]
+                                + self.turn[k][2] * x[2][i]
+                        }
+                    };
+                }
+            }
+        }
+        for i in 0..BLOCK {
+            value[i] -= n[0][i] * self.centre[0] + n[1][i] * self.centre[1] + n[2][i] * self.centre[2];
+        }
+        Values { value, gradient }
+    }
+}
+
+#[inline(always)]
+pub(super) fn dot(a: &Triple, b: &Triple) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(super) fn cross(a: &Triple, b: &Triple) -> Triple {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+pub(super) fn scaled(a: &Triple, factor: f64) -> Triple {
+    [a[0] * factor, a[1] * factor, a[2] * factor]
+}
+
+#[inline(always)]
+pub(super) fn sum(a: &Triple, b: &Triple) -> Triple {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The unit vector along one that is not zero.
+#[inline(always)]
+pub(super) fn unit(a: &Triple) -> Triple {
+    scaled(a, 1.0 / dot(a, a).sqrt())
+}
+
+#[inline(always)]
+pub(super) fn difference(a: &Triple, b: &Triple) -> Triple {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}

@@ -1,0 +1,12 @@
+//! Floor 7: where two things touch, how far apart or how deep in each other they are.
+
+mod cells;
+mod chart;
+mod continuation;
+mod convex;
+mod descent;
+mod difference;
+mod pair;
+
+pub use convex::Convex;
+pub use pair::{Contact, WarmStart, certify, pair};
