@@ -11,9 +11,9 @@
 use super::continuation::settle;
 use super::descent::Minimum;
 use super::difference::{
-    BLOCK, Difference, Triple, Values, cross, difference, dot, scaled, unit,
+    Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit,
 };
-use crate::numeric::lanes::{Job, dispatch};
+use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Cells of the first level along an edge of the cube.
 const FIRST: usize = 4;
@@ -53,6 +53,15 @@ impl Face {
         Self { axes: [axis, (axis + 1) % 3, (axis + 2) % 3], side }
     }
 
+    /// The unit direction of a cell's middle.
+    fn direction(&self, cell: &Cell) -> Triple {
+        let mut m = [0.0; 3];
+        m[self.axes[0]] = self.side;
+        m[self.axes[1]] = cell.middle[0];
+        m[self.axes[2]] = cell.middle[1];
+        unit(&m)
+    }
+
     /// The components of a vector across and along the face.
     #[inline(always)]
     fn local(&self, v: &Triple) -> Triple {
@@ -64,15 +73,40 @@ impl Face {
 pub(super) struct Least {
     pub(super) minimum: Minimum,
     pub(super) bound: f64,
-    pub(super) cells: usize,
-    pub(super) descents: usize,
 }
 
 /// Searches the sphere, given a minimum where the bodies overlap; cells are split until the bound is within
 /// `tolerance` (in the pair's size) or `most` of them were looked at.
 pub(super) fn least(pair: &Difference, known: Minimum, tolerance: f64, most: usize) -> Least {
-    let mut found = Least { minimum: known, bound: f64::INFINITY, cells: 0, descents: 0 };
+    if tolerance > 10.0 * <f32 as Precision>::SLACK {
+        search::<f32, 16>(pair, known, tolerance, most)
+    } else {
+        search::<f64, 8>(pair, known, tolerance, most)
+    }
+}
+
+/// What a bound loses to rounding in the pair's size: support points are taken as that much nearer to the centres.
+trait Precision {
+    const SLACK: f64;
+}
+
+impl Precision for f32 {
+    const SLACK: f64 = 1e-5;
+}
+
+impl Precision for f64 {
+    const SLACK: f64 = 1e-13;
+}
+
+fn search<T: Lane + Precision, const N: usize>(
+    pair: &Difference,
+    known: Minimum,
+    tolerance: f64,
+    most: usize,
+) -> Least {
+    let mut found = Least { minimum: known, bound: f64::INFINITY };
     let mut minima = vec![known.normal[0]];
+    let mut looked_at = 0;
     let mut open: Vec<Cell> = Vec::with_capacity(64);
     for number in 0..6 {
         let face = Face::new(number);
@@ -85,33 +119,34 @@ pub(super) fn least(pair: &Difference, known: Minimum, tolerance: f64, most: usi
                 open.push(cell);
             }
         }
-        while !open.is_empty() {
-            let taken = &open[open.len().saturating_sub(BLOCK)..];
-            let block = Block::new(pair, face, taken, &found.minimum);
-            let taken = taken.len();
+        while let Some(last) = open.last() {
+            let mut cells = [*last; N];
+            let taken = open.len().min(N);
             let from = open.len() - taken;
-            let cells: [Cell; BLOCK] = std::array::from_fn(|i| open[from + i.min(taken - 1)]);
+            cells[..taken].copy_from_slice(&open[from..]);
             open.truncate(from);
-            found.cells += taken;
+            let block = Block::<T, N>::new(pair, face, &cells, &found.minimum);
+            looked_at += taken;
             for (i, cell) in cells[..taken].iter().enumerate() {
-                let bound = block.own[i].max(block.shared[i]);
-                let (middle, steep) = block.fall(i);
                 let best = found.minimum.expansion.value;
+                let own = block.own[i].wide() - T::SLACK;
+                let bound = own.max(block.shared[i].wide() - T::SLACK);
                 // might it hold a better minimum than those that are known?
-                let hopeful = block.own[i] < best
-                    && minima.len() < MINIMA
-                    && !minima.iter().any(|m| falls_to(&middle, &steep, m));
+                let hopeful = own < best && minima.len() < MINIMA && {
+                    let (middle, steep) = block.fall(i);
+                    !minima.iter().any(|m| falls_to(&middle, &steep, m))
+                };
                 let small = cell.half <= SMALLEST && bound >= best - tolerance;
-                if block.values.value[i] < best || hopeful && small {
+                if block.values.value[i].wide() < best - T::SLACK || hopeful && small {
+                    let middle = face.direction(cell);
                     let other = settle(pair, &[middle, pair.to_b(&middle)]);
-                    found.descents += 1;
                     minima.push(other.normal[0]);
                     if other.expansion.value < best {
                         found.minimum = other;
                     }
                 }
                 let far = bound < found.minimum.expansion.value - tolerance;
-                if found.cells < most && (far || hopeful && !small) {
+                if looked_at < most && (far || hopeful && !small) {
                     open.extend(cell.quarters().iter().filter(|c| faces(c, &centre)));
                 } else {
                     found.bound = found.bound.min(bound);
@@ -124,89 +159,104 @@ pub(super) fn least(pair: &Difference, known: Minimum, tolerance: f64, most: usi
 }
 
 /// What is known of some cells of a face.
-struct Block {
-    directions: [[f64; BLOCK]; 3],
-    values: Values,
-    /// Bounds of `φ` by the gradients at the middles, and by the best minimum.
-    own: [f64; BLOCK],
-    shared: [f64; BLOCK],
+struct Block<T, const N: usize> {
+    directions: [[T; N]; 3],
+    values: Values<T, N>,
+    /// Bounds of `φ` by the gradients at the middles, and by that at the best minimum.
+    own: [T; N],
+    shared: [T; N],
 }
 
-impl Block {
-    fn new(pair: &Difference, face: Face, cells: &[Cell], best: &Minimum) -> Self {
+impl<T: Lane, const N: usize> Block<T, N> {
+    fn new(pair: &Difference, face: Face, cells: &[Cell; N], best: &Minimum) -> Self {
+        let zero = [T::of(0.0); N];
         let mut block = Self {
-            directions: [[0.0; BLOCK]; 3],
-            values: Values { value: [0.0; BLOCK], gradient: [[0.0; BLOCK]; 3] },
-            own: [f64::INFINITY; BLOCK],
-            shared: [f64::INFINITY; BLOCK],
+            directions: [zero; 3],
+            values: Values { value: zero, gradient: [zero; 3] },
+            own: [T::of(f64::INFINITY); N],
+            shared: [T::of(f64::INFINITY); N],
         };
-        let best = face.local(&best.expansion.gap);
+        let best = narrow(&face.local(&best.expansion.gap));
         dispatch(Judgement { pair, face, cells, best, into: &mut block });
         block
     }
 
     /// The middle of a cell, and the gradient of `φ` there along the sphere.
     fn fall(&self, i: usize) -> (Triple, Triple) {
-        let middle = self.directions.map(|v| v[i]);
-        let gradient = self.values.gradient.map(|v| v[i]);
-        (middle, difference(&gradient, &scaled(&middle, self.values.value[i])))
+        let middle = self.directions.map(|v| v[i].wide());
+        let gradient = self.values.gradient.map(|v| v[i].wide());
+        (middle, difference(&gradient, &scaled(&middle, self.values.value[i].wide())))
     }
 }
 
-struct Judgement<'a> {
+struct Judgement<'a, T, const N: usize> {
     pair: &'a Difference,
     face: Face,
-    cells: &'a [Cell],
-    best: Triple,
-    into: &'a mut Block,
+    cells: &'a [Cell; N],
+    best: [T; 3],
+    into: &'a mut Block<T, N>,
 }
 
-impl Job for Judgement<'_> {
+impl<T: Lane, const N: usize> Job for Judgement<'_, T, N> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let (mut x, mut y, mut half) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+        let zero = [T::of(0.0); N];
+        let (mut x, mut y, mut half) = (zero, zero, zero);
         for (i, cell) in self.cells.iter().enumerate() {
-            x[i] = cell.middle[0];
-            y[i] = cell.middle[1];
-            half[i] = cell.half;
+            x[i] = T::of(cell.middle[0]);
+            y[i] = T::of(cell.middle[1]);
+            half[i] = T::of(cell.half);
         }
-        let (block, [across, along, up]) = (self.into, self.face.axes);
-        for i in 0..BLOCK {
-            let shorter = 1.0 / (1.0 + x[i] * x[i] + y[i] * y[i]).sqrt();
-            block.directions[across][i] = self.face.side * shorter;
-            block.directions[along][i] = x[i] * shorter;
-            block.directions[up][i] = y[i] * shorter;
+        let [across, along, up] = self.face.axes;
+        let (one, side, ball) = (T::of(1.0), T::of(self.face.side), T::of(self.pair.rolling));
+        // in the face's order of axes, and in arrays of their own, as only those become vectors
+        let mut n = [zero; 3];
+        for i in 0..N {
+            n[0][i] = one / (one + x[i] * x[i] + y[i] * y[i]).sqrt();
+            n[1][i] = x[i] * n[0][i];
+            n[2][i] = y[i] * n[0][i];
         }
-        block.values = self.pair.values::<FUSED>(&block.directions);
-        let (v, n, ball) = (&block.values.gradient, &block.directions, self.pair.rolling);
-        let side = self.face.side;
+        let mut directions = [n[0]; 3];
+        directions[along] = n[1];
+        directions[up] = n[2];
+        for i in 0..N {
+            directions[across][i] = side * n[0][i];
+        }
+        let values = self.pair.values::<FUSED, T, N>(&directions);
+        let mut v = [values.gradient[across], values.gradient[along], values.gradient[up]];
+        for i in 0..N {
+            v[0][i] = side * v[0][i];
+        }
+        let mut own = [T::of(f64::INFINITY); N];
+        let mut shared = own;
         // the corner that is farthest from the middle, as the cosine of the angle
-        let mut widest = [1.0; BLOCK];
+        let mut widest = [one; N];
         for (dx, dy) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
-            for i in 0..BLOCK {
-                let (p, q) = (x[i] + dx * half[i], y[i] + dy * half[i]);
-                let shorter = 1.0 / (1.0 + p * p + q * q).sqrt();
-                let middle = (side * n[across][i] + p * n[along][i] + q * n[up][i]) * shorter;
-                let own = (side * v[across][i] + p * v[along][i] + q * v[up][i]) * shorter;
-                let own = own - ball * middle;
-                let shared = (self.best[0] + p * self.best[1] + q * self.best[2]) * shorter;
-                block.own[i] = if own < block.own[i] { own } else { block.own[i] };
-                block.shared[i] = if shared < block.shared[i] { shared } else { block.shared[i] };
-                widest[i] = if middle < widest[i] { middle } else { widest[i] };
+            for i in 0..N {
+                let (p, q) = (x[i] + T::of(dx) * half[i], y[i] + T::of(dy) * half[i]);
+                let shorter = one / (one + p * p + q * q).sqrt();
+                let middle = (n[0][i] + p * n[1][i] + q * n[2][i]) * shorter;
+                let least = (v[0][i] + p * v[1][i] + q * v[2][i]) * shorter;
+                let by_best = (self.best[0] + p * self.best[1] + q * self.best[2]) * shorter;
+                own[i] = own[i].least(least - ball * middle);
+                shared[i] = shared[i].least(by_best);
+                widest[i] = widest[i].least(middle);
             }
         }
-        for i in 0..BLOCK {
+        let zero = T::of(0.0);
+        for i in 0..N {
             // below 0 the least is not at a corner: that of the cone around the cell
-            let radial = block.values.value[i] - ball;
+            let radial = values.value[i] - ball;
             let square = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
-            let square = square - 2.0 * ball * block.values.value[i] + ball * ball;
-            let tangential = (square - radial * radial).max(0.0).sqrt();
-            let sine = (1.0 - widest[i] * widest[i]).max(0.0).sqrt();
-            let inside = tangential * widest[i] < -radial * sine;
+            let square = square - ball * (values.value[i] + radial);
+            let tangential = (square - radial * radial).most(zero).sqrt();
+            let sine = (one - widest[i] * widest[i]).most(zero).sqrt();
+            let inside = tangential * widest[i] < zero - radial * sine;
             let cone = radial * widest[i] - tangential * sine;
-            let cone = if inside { -square.max(0.0).sqrt() } else { cone };
-            block.own[i] = ball + if block.own[i] < 0.0 { cone } else { block.own[i] };
+            let cone = if inside { zero - square.most(zero).sqrt() } else { cone };
+            own[i] = ball + if own[i] < zero { cone } else { own[i] };
         }
+        *self.into = Block { directions, values, own, shared };
     }
 }
 

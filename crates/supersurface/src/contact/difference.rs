@@ -14,17 +14,14 @@
 //! Lengths are divided by the pair's size, the mean of the largest semi-axes.
 
 use super::Convex;
-use crate::numeric::lanes::{exp, fused, ln};
+use crate::numeric::lanes::{Lane, fused};
 use crate::shape::Posed;
 
 /// A vector as the kernels have it.
 pub(super) type Triple = [f64; 3];
 
-/// `u_i` below this counts as this: what is smaller changes nothing, and its reciprocal is still finite.
-const TINY: f64 = 1e-300;
-
-/// Directions that are evaluated at once.
-pub(super) const BLOCK: usize = 8;
+/// Centres are no farther apart along an axis than this, in metres: squares overflow.
+const FARTHEST: f64 = 1e300;
 
 /// Two bodies in A's frame, in units of their size.
 #[derive(Clone, Debug)]
@@ -70,55 +67,54 @@ impl Expansion {
 
 /// `φ` and its gradient in A's frame for a block of directions.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Values {
-    pub(super) value: [f64; BLOCK],
-    pub(super) gradient: [[f64; BLOCK]; 3],
+pub(super) struct Values<T, const N: usize> {
+    pub(super) value: [T; N],
+    pub(super) gradient: [[T; N]; 3],
 }
 
 /// Support functions and shares of `N` bodies or directions.
-struct Shares<const N: usize> {
-    support: [f64; N],
-    inner: [[f64; N]; 2],
-    outer: [[f64; N]; 2],
+struct Shares<T, const N: usize> {
+    support: [T; N],
+    inner: [[T; N]; 2],
+    outer: [[T; N]; 2],
 }
 
 /// From `u`; `q` and `r = 1/q` as `[q1, q2]`.
 #[inline(always)]
-fn shares<const FUSED: bool, const N: usize>(
-    u: &[[f64; N]; 3],
-    q: &[[f64; N]; 2],
-    r: &[[f64; N]; 2],
-) -> Shares<N> {
-    let mut logs = [[0.0; N]; 3];
+fn shares<const FUSED: bool, T: Lane, const N: usize>(
+    u: &[[T; N]; 3],
+    q: &[[T; N]; 2],
+    r: &[[T; N]; 2],
+) -> Shares<T, N> {
+    let mut logs = *u;
     for k in 0..3 {
         for i in 0..N {
-            logs[k][i] = ln::<FUSED>(u[k][i]);
+            logs[k][i] = u[k][i].ln::<FUSED>();
         }
     }
-    let (norm, inner) = norm_of_logs::<FUSED, N>(&logs[0], &logs[1], &q[1], &r[1]);
-    let (norm, outer) = norm_of_logs::<FUSED, N>(&norm, &logs[2], &q[0], &r[0]);
-    let mut support = [0.0; N];
+    let (norm, inner) = norm_of_logs::<FUSED, T, N>(&logs[0], &logs[1], &q[1], &r[1]);
+    let (mut support, outer) = norm_of_logs::<FUSED, T, N>(&norm, &logs[2], &q[0], &r[0]);
     for i in 0..N {
-        support[i] = exp::<FUSED>(norm[i]);
+        support[i] = support[i].exp::<FUSED>();
     }
     Shares { support, inner, outer }
 }
 
 /// Logarithm of the q-norm of two numbers given by their logarithms, and the share of each in its q-th power.
 #[inline(always)]
-fn norm_of_logs<const FUSED: bool, const N: usize>(
-    x: &[f64; N],
-    y: &[f64; N],
-    q: &[f64; N],
-    r: &[f64; N],
-) -> ([f64; N], [[f64; N]; 2]) {
-    let (mut norm, mut shares) = ([0.0; N], [[0.0; N]; 2]);
+fn norm_of_logs<const FUSED: bool, T: Lane, const N: usize>(
+    x: &[T; N],
+    y: &[T; N],
+    q: &[T; N],
+    r: &[T; N],
+) -> ([T; N], [[T; N]; 2]) {
+    let (mut norm, mut shares) = (*x, [*x, *y]);
     for i in 0..N {
-        let (high, low) = if x[i] > y[i] { (x[i], y[i]) } else { (y[i], x[i]) };
-        let ratio = exp::<FUSED>(q[i] * (low - high));
-        let sum = 1.0 + ratio;
-        norm[i] = fused::<FUSED>(ln::<FUSED>(sum), r[i], high);
-        let (large, small) = (1.0 / sum, ratio / sum);
+        let (high, low) = (x[i].most(y[i]), x[i].least(y[i]));
+        let ratio = (q[i] * (low - high)).exp::<FUSED>();
+        let sum = T::of(1.0) + ratio;
+        norm[i] = sum.ln::<FUSED>().times_plus::<FUSED>(r[i], high);
+        let (large, small) = (T::of(1.0) / sum, ratio / sum);
         shares[0][i] = if x[i] > y[i] { large } else { small };
         shares[1][i] = if x[i] > y[i] { small } else { large };
     }
@@ -129,11 +125,13 @@ impl Difference {
     pub(super) fn new(a: &Posed<Convex>, b: &Posed<Convex>) -> Self {
         let axes = [a, b].map(|body| body.shape().shape().semi_axes());
         let [largest_a, largest_b] = axes.map(|a| a[0].max(a[1]).max(a[2]));
-        let size = 0.5 * largest_a + 0.5 * largest_b;
         let back = a.pose().rotation.inverse();
         let turn = (back * b.pose().rotation).to_rotation_matrix();
         // the difference first: bodies far from the origin
-        let apart = back * (b.pose().translation.vector - a.pose().translation.vector);
+        let apart = b.pose().translation.vector - a.pose().translation.vector;
+        let apart = back * apart.map(|v| v.clamp(-FARTHEST, FARTHEST));
+        // bodies far apart are points, whose size would overflow what is divided by it
+        let size = (0.5 * largest_a + 0.5 * largest_b).max(1e-100 * apart.amax());
         Self {
             semi_axes: axes.map(|a| a.map(|v| v / size)),
             dual: [a.shape().dual, b.shape().dual],
@@ -188,11 +186,11 @@ impl Difference {
         let mut u = [[0.0; 2]; 3];
         for (b, n) in n.iter().enumerate() {
             for k in 0..3 {
-                u[k][b] = (self.semi_axes[b][k] * n[k].abs()).max(TINY);
+                u[k][b] = (self.semi_axes[b][k] * n[k].abs()).max(f64::TINY);
             }
         }
         let by_body = |v: &[[f64; 2]; 2]| [[v[0][0], v[1][0]], [v[0][1], v[1][1]]];
-        let found = shares::<FUSED, 2>(&u, &by_body(&self.dual), &by_body(&self.inverse_dual));
+        let found = shares::<FUSED, f64, 2>(&u, &by_body(&self.dual), &by_body(&self.inverse_dual));
         let mut points = [[0.0; 3]; 2];
         let (mut hessian, mut majorant) = ([0.0; 3], [0.0; 3]);
         for b in 0..2 {
@@ -232,60 +230,68 @@ impl Difference {
 
     /// `φ` and its gradient for a block of unit directions of A's frame.
     #[inline(always)]
-    pub(super) fn values<const FUSED: bool>(&self, n: &[[f64; BLOCK]; 3]) -> Values {
-        let mut value = [0.0; BLOCK];
-        let mut gradient = [[0.0; BLOCK]; 3];
+    pub(super) fn values<const FUSED: bool, T: Lane, const N: usize>(
+        &self,
+        n: &[[T; N]; 3],
+    ) -> Values<T, N> {
+        let zero = [T::of(0.0); N];
+        let mut found = Values { value: zero, gradient: [zero; 3] };
+        let turn: [[T; 3]; 3] = [narrow(&self.turn[0]), narrow(&self.turn[1]), narrow(&self.turn[2])];
+        let centre: [T; 3] = narrow(&self.centre);
         for b in 0..2 {
+            let semi_axes: [T; 3] = narrow(&self.semi_axes[b]);
             let mut local = *n;
             if b == 1 {
                 for k in 0..3 {
-                    for i in 0..BLOCK {
-                        local[k][i] = self.turn[0][k] * n[0][i]
-                            + self.turn[1][k] * n[1][i]
-                            + self.turn[2][k] * n[2][i];
+                    for i in 0..N {
+                        local[k][i] =
+                            turn[0][k] * n[0][i] + turn[1][k] * n[1][i] + turn[2][k] * n[2][i];
                     }
                 }
             }
-            let mut u = [[0.0; BLOCK]; 3];
+            let mut u = local;
             for k in 0..3 {
-                for i in 0..BLOCK {
-                    u[k][i] = (self.semi_axes[b][k] * local[k][i].abs()).max(TINY);
+                for i in 0..N {
+                    u[k][i] = (semi_axes[k] * local[k][i].abs()).most(T::TINY);
                 }
             }
-            let q = [[self.dual[b][0]; BLOCK], [self.dual[b][1]; BLOCK]];
-            let r = [[self.inverse_dual[b][0]; BLOCK], [self.inverse_dual[b][1]; BLOCK]];
-            let found = shares::<FUSED, BLOCK>(&u, &q, &r);
-            let mut x = [[0.0; BLOCK]; 3];
-            for i in 0..BLOCK {
-                let planar = found.support[i] * found.outer[0][i];
+            let spread = |q: &[f64; 2]| [[T::of(q[0]); N], [T::of(q[1]); N]];
+            let (q, r) = (spread(&self.dual[b]), spread(&self.inverse_dual[b]));
+            let of = shares::<FUSED, T, N>(&u, &q, &r);
+            let mut x = local;
+            for i in 0..N {
+                let planar = of.support[i] * of.outer[0][i];
                 let along = [
-                    planar * found.inner[0][i],
-                    planar * found.inner[1][i],
-                    found.support[i] * found.outer[1][i],
+                    planar * of.inner[0][i],
+                    planar * of.inner[1][i],
+                    of.support[i] * of.outer[1][i],
                 ];
                 for k in 0..3 {
-                    x[k][i] = (self.semi_axes[b][k] * along[k] / u[k][i]).copysign(local[k][i]);
+                    x[k][i] = (semi_axes[k] * along[k] / u[k][i]).copysign(local[k][i]);
                 }
-                value[i] += found.support[i];
+                found.value[i] += of.support[i];
             }
             for k in 0..3 {
-                for i in 0..BLOCK {
-                    gradient[k][i] += match b {
-                        0 => x[k][i] - self.centre[k],
-                        _ => {
-                            self.turn[k][0] * x[0][i]
-                                + self.turn[k][1] * x[1][i]
-                                + self.turn[k][2] * x[2][i]
-                        }
+                for i in 0..N {
+                    found.gradient[k][i] += match b {
+                        0 => x[k][i] - centre[k],
+                        _ => turn[k][0] * x[0][i] + turn[k][1] * x[1][i] + turn[k][2] * x[2][i],
                     };
                 }
             }
         }
-        for i in 0..BLOCK {
-            value[i] -= n[0][i] * self.centre[0] + n[1][i] * self.centre[1] + n[2][i] * self.centre[2];
+        for i in 0..N {
+            let along = n[0][i] * centre[0] + n[1][i] * centre[1] + n[2][i] * centre[2];
+            found.value[i] = found.value[i] - along;
         }
-        Values { value, gradient }
+        found
     }
+}
+
+/// Three numbers in a kernel's precision.
+#[inline(always)]
+pub(super) fn narrow<T: Lane>(v: &Triple) -> [T; 3] {
+    [T::of(v[0]), T::of(v[1]), T::of(v[2])]
 }
 
 #[inline(always)]

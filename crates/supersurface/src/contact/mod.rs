@@ -7,6 +7,7 @@ mod convex;
 mod descent;
 mod difference;
 mod pair;
+mod witness;
 
 pub use convex::Convex;
-pub use pair::{Contact, WarmStart, certify, pair};
+pub use pair::{Contact, WarmStart, certify, intersect, pair};

@@ -68,6 +68,146 @@ fn polynomial<const FUSED: bool, const N: usize>(x: f64, c: [f64; N]) -> f64 {
     pair(x8, eight(0), eight(8), 8 < N)
 }
 
+/// A number that a kernel can be written for once: `f64`, or `f32` where twice as many at a time matter more than the
+/// last digits.
+pub trait Lane:
+    Copy
+    + PartialOrd
+    + std::ops::Add<Output = Self>
+    + std::ops::Sub<Output = Self>
+    + std::ops::Mul<Output = Self>
+    + std::ops::Div<Output = Self>
+    + std::ops::AddAssign
+{
+    /// The smallest number that a kernel takes logarithms of.
+    const TINY: Self;
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+    /// As an `f64`, exactly.
+    fn wide(self) -> f64;
+    /// `self · b + c` as [`fused`].
+    fn times_plus<const FUSED: bool>(self, b: Self, c: Self) -> Self;
+    /// As [`ln`]; `f32`: within 2e-7 of its magnitude or 2e-7.
+    fn ln<const FUSED: bool>(self) -> Self;
+    /// As [`exp`]; `f32`: within 3e-7 relative, the argument clamped to ±87.
+    fn exp<const FUSED: bool>(self) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// With the sign of another.
+    fn copysign(self, sign: Self) -> Self;
+    /// The smaller one; neither may be NaN.
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    /// The larger one; neither may be NaN.
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+}
+
+impl Lane for f64 {
+    const TINY: Self = 1e-300;
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn wide(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn times_plus<const FUSED: bool>(self, b: Self, c: Self) -> Self {
+        fused::<FUSED>(self, b, c)
+    }
+    #[inline(always)]
+    fn ln<const FUSED: bool>(self) -> Self {
+        ln::<FUSED>(self)
+    }
+    #[inline(always)]
+    fn exp<const FUSED: bool>(self) -> Self {
+        exp::<FUSED>(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        self.copysign(sign)
+    }
+}
+
+impl Lane for f32 {
+    const TINY: Self = 1e-30;
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as f32
+    }
+    #[inline(always)]
+    fn wide(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    fn times_plus<const FUSED: bool>(self, b: Self, c: Self) -> Self {
+        if FUSED { self.mul_add(b, c) } else { self * b + c }
+    }
+    #[inline(always)]
+    fn ln<const FUSED: bool>(self) -> Self {
+        const TWO_23: u32 = 0x4B00_0000;
+        let bits = self.to_bits();
+        let biased = f32::from_bits((bits >> 23) | TWO_23) - f32::from_bits(TWO_23);
+        let mantissa = f32::from_bits((bits & 0x007F_FFFF) | 0x3F80_0000);
+        let high = mantissa > std::f32::consts::SQRT_2;
+        let m = if high { 0.5 * mantissa } else { mantissa };
+        let k = if high { biased - 126.0 } else { biased - 127.0 };
+        let s = (m - 1.0) / (m + 1.0);
+        let q = s * s;
+        let low = q.times_plus::<FUSED>(1.0 / 3.0, 1.0);
+        let high = q.times_plus::<FUSED>(1.0 / 7.0, 1.0 / 5.0);
+        let series = (q * q).times_plus::<FUSED>(high, low);
+        k.times_plus::<FUSED>(std::f32::consts::LN_2, 2.0 * s * series)
+    }
+    #[inline(always)]
+    fn exp<const FUSED: bool>(self) -> Self {
+        // adding 1.5 2^23 rounds to an integer and leaves it in the low bits
+        const ROUND: f32 = 12_582_912.0;
+        const LN_2_HIGH: f32 = 0.693_145_75;
+        const LN_2_LOW: f32 = 1.428_606_8e-6;
+        let x = self.least(87.0).most(-87.0);
+        let shifted = x.times_plus::<FUSED>(std::f32::consts::LOG2_E, ROUND);
+        let k = shifted - ROUND;
+        let r = k.times_plus::<FUSED>(-LN_2_LOW, k.times_plus::<FUSED>(-LN_2_HIGH, x));
+        let (square, low) = (r * r, 1.0 + r);
+        let middle = r.times_plus::<FUSED>(1.0 / 6.0, 0.5);
+        let high = r.times_plus::<FUSED>(1.0 / 120.0, 1.0 / 24.0);
+        let highest = r.times_plus::<FUSED>(1.0 / 5_040.0, 1.0 / 720.0);
+        let high = square.times_plus::<FUSED>(highest, high);
+        let middle = square.times_plus::<FUSED>(high, middle);
+        let series = square.times_plus::<FUSED>(middle, low);
+        series * f32::from_bits((shifted.to_bits() << 23).wrapping_add(0x3F80_0000))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        self.copysign(sign)
+    }
+}
+
 /// Natural logarithm of a positive normal number, within 2e-16 of its magnitude or 4e-16.
 ///
 /// `x = 2^k m` with `m` in [1/√2, √2), `ln m = 2 artanh((m - 1)/(m + 1))` by its series.
@@ -241,6 +381,36 @@ mod tests {
             }
         }
         assert_eq!((ln::<false>(1.0), exp::<false>(0.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn single_precision_has_six_digits() {
+        struct Both<'a>([f32; WIDTH], &'a mut [[f32; WIDTH]; 2]);
+        impl Job for Both<'_> {
+            #[inline(always)]
+            fn run<const FUSED: bool>(self) {
+                for i in 0..WIDTH {
+                    self.1[0][i] = Lane::exp::<FUSED>(self.0[i]);
+                    self.1[1][i] = Lane::ln::<FUSED>(self.1[0][i]);
+                }
+            }
+        }
+        let mut random = Stream::new(13, 0);
+        for _ in 0..20_000 {
+            let x: [f32; WIDTH] = std::array::from_fn(|_| random.between(-86.0, 86.0) as f32);
+            let (mut wide, mut plain) = ([[0.0; WIDTH]; 2], [[0.0; WIDTH]; 2]);
+            dispatch(Both(x, &mut wide));
+            Both(x, &mut plain).run::<false>();
+            for found in [wide, plain] {
+                for ((x, power), log) in x.iter().zip(found[0]).zip(found[1]) {
+                    let (exact, power) = (f64::from(*x).exp(), f64::from(power));
+                    assert!((power / exact - 1.0).abs() < 3e-7, "{x}: {power}");
+                    let exact = power.ln();
+                    let error = (f64::from(log) - exact).abs();
+                    assert!(error < 2e-7 * exact.abs().max(1.0), "{x}: {log}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod fit_turned;
 mod fit_views;
 mod floors;
 mod golden_antipodal;
+mod golden_contact;
 mod golden_deform;
 mod golden_general;
 mod golden_jacobian;
