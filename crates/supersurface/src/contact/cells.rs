@@ -19,6 +19,9 @@ use crate::numeric::lanes::{Job, Lane, dispatch};
 const FIRST: usize = 4;
 /// Half width of cells below which a descent says more than smaller cells.
 const SMALLEST: f64 = 0.04;
+/// Minima this near to the best are as good, in the pair's size, and this far away, in radians, others.
+const ALIKE: f64 = 1e-9;
+const DISTINCT: f64 = 1e-4;
 /// Minima that are told apart.
 const MINIMA: usize = 24;
 
@@ -73,6 +76,8 @@ impl Face {
 pub(super) struct Least {
     pub(super) minimum: Minimum,
     pub(super) bound: f64,
+    /// False where another direction is as good.
+    pub(super) unique: bool,
 }
 
 /// Searches the sphere, given a minimum where the bodies overlap; cells are split until the bound is within
@@ -104,8 +109,8 @@ fn search<T: Lane + Precision, const N: usize>(
     tolerance: f64,
     most: usize,
 ) -> Least {
-    let mut found = Least { minimum: known, bound: f64::INFINITY };
-    let mut minima = vec![known.normal[0]];
+    let mut found = Least { minimum: known, bound: f64::INFINITY, unique: true };
+    let mut minima = vec![known];
     let mut looked_at = 0;
     let mut open: Vec<Cell> = Vec::with_capacity(64);
     for number in 0..6 {
@@ -134,13 +139,13 @@ fn search<T: Lane + Precision, const N: usize>(
                 // might it hold a better minimum than those that are known?
                 let hopeful = own < best && minima.len() < MINIMA && {
                     let (middle, steep) = block.fall(i);
-                    !minima.iter().any(|m| falls_to(&middle, &steep, m))
+                    !minima.iter().any(|m| falls_to(&middle, &steep, &m.normal[0]))
                 };
                 let small = cell.half <= SMALLEST && bound >= best - tolerance;
                 if block.values.value[i].wide() < best - T::SLACK || hopeful && small {
                     let middle = face.direction(cell);
                     let other = settle(pair, &[middle, pair.to_b(&middle)]);
-                    minima.push(other.normal[0]);
+                    minima.push(other);
                     if other.expansion.value < best {
                         found.minimum = other;
                     }
@@ -154,7 +159,12 @@ fn search<T: Lane + Precision, const N: usize>(
             }
         }
     }
-    found.bound = found.bound.min(found.minimum.expansion.value);
+    let best = found.minimum.expansion.value;
+    found.bound = found.bound.min(best);
+    found.unique = !minima.iter().any(|m| {
+        let apart = difference(&m.normal[0], &found.minimum.normal[0]);
+        m.expansion.value < best + ALIKE && dot(&apart, &apart) > DISTINCT * DISTINCT
+    });
     found
 }
 

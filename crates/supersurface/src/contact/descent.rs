@@ -15,6 +15,9 @@ const REFUSALS: i32 = 14;
 /// The support points are to face each other as well as this, in the pair's size.
 const FACING: f64 = 1e-10;
 
+/// Curvature below which a minimum is a valley.
+const FLAT: f64 = 1e-9;
+
 /// Where a descent ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Minimum {
@@ -28,6 +31,22 @@ pub(super) struct Minimum {
 }
 
 impl Minimum {
+    /// False where the second derivative says that a whole line of directions is as good.
+    pub(super) fn is_isolated(&self, pair: &Difference) -> bool {
+        let chart = Chart::at(pair, &self.normal);
+        let at = pair.expand::<false>(&self.normal, &chart.tangents);
+        let [t, s] = &chart.tangents[0];
+        let (xx, xy, yy) = (dot(t, t), dot(t, s), dot(s, s));
+        let a = at.hessian[0] - at.value * xx;
+        let b = at.hessian[1] - at.value * xy;
+        let c = at.hessian[2] - at.value * yy;
+        // of the form scaled to ones on its diagonal, as rows may differ by hundreds of magnitudes
+        let scale = [a, c].map(|v| 1.0 / v.abs().sqrt());
+        let mixed = b * scale[0] * scale[1];
+        let floor = FLAT * (at.value.abs() + 1.0);
+        a > floor * xx && c > floor * yy && 1.0 - mixed * mixed > FLAT
+    }
+
     /// Length of the gradient along the sphere, in the pair's size: how far the support points are from facing each
     /// other.
     #[inline(always)]

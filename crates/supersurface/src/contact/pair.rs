@@ -45,9 +45,9 @@ pub struct WarmStart {
 }
 
 /// Widest bounds of the depth, in the pair's size, that [`pair`] is content with.
-const CONTENT: f64 = 1e-3;
+pub(super) const CONTENT: f64 = 1e-3;
 /// Cells after which [`pair`] gives the bounds that it has.
-const CELLS: usize = 20_000;
+pub(super) const CELLS: usize = 20_000;
 /// The same for [`certify`].
 const MANY_CELLS: usize = 3_000_000;
 /// What rounding may have done to a bound, relative to the lengths that went into it.
@@ -70,14 +70,15 @@ const ROUNDING: f64 = 4e-15;
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
 pub fn pair(a: &Posed<Convex>, b: &Posed<Convex>, start: &mut WarmStart) -> Contact {
-    query(a, b, start, CONTENT, CELLS)
+    answer(a, b, start, CONTENT, CELLS).contact(a, b)
 }
 
 /// The same with bounds at most `tolerance` wide, in metres, where rounding and three million cells allow it. For
 /// depths it takes milliseconds rather than microseconds.
 pub fn certify(a: &Posed<Convex>, b: &Posed<Convex>, tolerance: f64) -> Contact {
     let size = Difference::new(a, b).size;
-    query(a, b, &mut WarmStart::default(), (tolerance / size).max(0.0), MANY_CELLS)
+    let tolerance = (tolerance / size).max(0.0);
+    answer(a, b, &mut WarmStart::default(), tolerance, MANY_CELLS).contact(a, b)
 }
 
 /// True where the bodies overlap or touch. Cheaper than [`pair`] for deep overlaps, which are not measured.
@@ -89,47 +90,56 @@ pub fn intersect(a: &Posed<Convex>, b: &Posed<Convex>) -> bool {
     value >= 0.0 && least(&pair, found, value, CELLS).minimum.expansion.value >= 0.0
 }
 
-fn query(
+/// What was found, before it is told in the world's frame.
+pub(super) struct Answer {
+    pub(super) pair: Difference,
+    pub(super) minimum: Minimum,
+    /// A bound from below of the depth.
+    least_depth: f64,
+    /// False where another direction is as good.
+    pub(super) unique: bool,
+}
+
+pub(super) fn answer(
     a: &Posed<Convex>,
     b: &Posed<Convex>,
     start: &mut WarmStart,
     tolerance: f64,
     most: usize,
-) -> Contact {
+) -> Answer {
     let pair = Difference::new(a, b);
     let guess = match start.normal {
         Some(n) => [n, pair.to_b(&n)],
         None => first_guess(&pair),
     };
-    let mut found = settle(&pair, &guess);
-    let mut least_depth = f64::NEG_INFINITY;
-    if found.expansion.value > 0.0 {
-        let least = least(&pair, found, tolerance, most);
-        (found, least_depth) = (least.minimum, least.bound);
+    let minimum = settle(&pair, &guess);
+    let mut answer = Answer { pair, minimum, least_depth: f64::NEG_INFINITY, unique: true };
+    if minimum.expansion.value > 0.0 {
+        let least = least(&answer.pair, minimum, tolerance, most);
+        answer.minimum = least.minimum;
+        answer.least_depth = least.bound;
+        answer.unique = least.unique;
     }
-    start.normal = Some(found.normal[0]);
-    contact(a, b, &pair, &found, least_depth)
+    start.normal = Some(answer.minimum.normal[0]);
+    answer
 }
 
-fn contact(
-    a: &Posed<Convex>,
-    b: &Posed<Convex>,
-    pair: &Difference,
-    found: &Minimum,
-    least_depth: f64,
-) -> Contact {
-    let n = found.normal[0];
-    let distance = -found.expansion.value;
-    let witnesses = Witnesses::of(a, b, pair, found);
-    // of bodies that are apart no two points are nearer than the bodies
-    let above = if distance >= 0.0 { witnesses.distance() } else { -least_depth };
-    let reach = dot(&n, &pair.centre).abs() + found.expansion.value.abs();
-    let error = reach * (ROUNDING + a.shape().error() + b.shape().error());
-    let world = |p: &Triple| a.pose() * Point::from(Vector::from(*p) * pair.size);
-    Contact {
-        distance: distance * pair.size,
-        bounds: [(distance - error) * pair.size, (above.max(distance) + error) * pair.size],
-        normal: Direction::new_normalize(a.pose().rotation * Vector::from(n)),
-        witnesses: [world(&witnesses.of_a), world(&witnesses.of_b)],
+impl Answer {
+    pub(super) fn contact(&self, a: &Posed<Convex>, b: &Posed<Convex>) -> Contact {
+        let (pair, found) = (&self.pair, &self.minimum);
+        let n = found.normal[0];
+        let distance = -found.expansion.value;
+        let witnesses = Witnesses::of(a, b, pair, found);
+        // of bodies that are apart no two points are nearer than the bodies
+        let above = if distance >= 0.0 { witnesses.distance() } else { -self.least_depth };
+        let reach = dot(&n, &pair.centre).abs() + found.expansion.value.abs();
+        let error = reach * (ROUNDING + a.shape().error() + b.shape().error());
+        let world = |p: &Triple| a.pose() * Point::from(Vector::from(*p) * pair.size);
+        Contact {
+            distance: distance * pair.size,
+            bounds: [(distance - error) * pair.size, (above.max(distance) + error) * pair.size],
+            normal: Direction::new_normalize(a.pose().rotation * Vector::from(n)),
+            witnesses: [world(&witnesses.of_a), world(&witnesses.of_b)],
+        }
     }
 }

@@ -9,11 +9,15 @@ use supersurface::{Pose, Vector};
 use crate::golden_shapes::{golden, numbers};
 
 fn body(v: &Value) -> Posed<Convex> {
-    let [a, e, t, q] = ["a", "e", "t", "quat_wxyz"].map(|k| numbers(&v[k]));
-    let shape = Superellipsoid::new([a[0], a[1], a[2]], [e[0], e[1]]).unwrap();
-    let turn = UnitQuaternion::new_normalize(Quaternion::new(q[0], q[1], q[2], q[3]));
-    let pose = Pose::from_parts(Translation3::new(t[0], t[1], t[2]), turn);
+    let shape = Superellipsoid::new(numbers(&v["a"]).unwrap(), numbers(&v["e"]).unwrap()).unwrap();
+    let [w, x, y, z] = numbers(&v["quat_wxyz"]).unwrap();
+    let turn = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+    let pose = Pose::from_parts(Translation3::from(vector(&v["t"])), turn);
     Posed::new(Convex::new(shape).unwrap(), pose).unwrap()
+}
+
+fn vector(v: &Value) -> Vector {
+    numbers(v).unwrap().into()
 }
 
 fn holds(found: &Contact, truth: f64, slack: f64) -> bool {
@@ -36,14 +40,14 @@ fn golden_contact() {
         let sure = certify(&bodies[0], &bodies[1], 1e-6 * largest);
         assert!(holds(&sure, truth, 1e-12), "{case} {sure:?}");
         assert!(sure.bounds[1] - sure.bounds[0] <= 1e-6 * largest, "{case} {sure:?}");
-        let normal = Vector::from_vec(numbers(&case["normal_A_to_B"]));
+        let normal = vector(&case["normal_A_to_B"]);
         // symmetric bodies about one centre have two
         let away = (found.normal.into_inner() - normal).norm();
         assert!(away < 1e-5 || (found.normal.into_inner() + normal).norm() < 1e-5, "{case}");
         let exponents = bodies.map(|b| b.shape().shape().exponents());
         if away < 1e-5 && exponents.as_flattened().iter().all(|e| *e >= 0.2) {
             for (point, key) in found.witnesses.iter().zip(["x_A", "x_B"]) {
-                let reference = Vector::from_vec(numbers(&case[key]));
+                let reference = vector(&case[key]);
                 assert!((point.coords - reference).norm() < 1e-5 * largest, "{case} {found:?}");
             }
         }

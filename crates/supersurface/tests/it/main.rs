@@ -3,6 +3,7 @@
 mod assembly;
 mod closest;
 mod combined;
+mod contact;
 mod conformance;
 mod fit_generic;
 mod fit_turned;
