@@ -15,6 +15,7 @@
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
 //! | 6 | [`mesh`] | watertight triangle meshes; points spread evenly on curves and surfaces |
 //! | 7 | [`segment`], [`fit`] | table plane and what stands on it; one supersurface per object |
+//! | 7 | [`contact`] | how deep bodies lie in each other; forces and wrenches |
 //! | 8 | [`separate`] | things that touch told apart, pieces of one thing put together |
 //! | 8 | [`grasp`], [`scene`] | ranked grasps; scenes seen by a simulated depth camera |
 //! | 9 | [`pipeline`], [`picture`] | cloud to grasps in one call; pixels on the CPU |
@@ -34,6 +35,7 @@ pub use nalgebra;
 pub mod camera;
 pub mod cloud;
 pub mod combine;
+pub mod contact;
 pub mod deform;
 pub mod fit;
 pub mod grasp;

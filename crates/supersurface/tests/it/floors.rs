@@ -16,6 +16,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("cloud", 6),
     ("segment", 7),
     ("fit", 7),
+    ("contact", 7),
     ("grasp", 8),
     ("scene", 8),
     ("separate", 8),

@@ -1,0 +1,28 @@
+//! Floor 7: contact between bodies.
+//!
+//! | for | use | holds |
+//! |---|---|---|
+//! | how deep a point lies in a solid | [`Indented`], [`ByClosestPoint`] | equation (46) without iteration; the exact closest point |
+//! | a mesh against a supersurface | [`Foundation`] | forces of an elastic layer, wrench on both bodies, derivatives by both poses |
+//! | what a force should be | [`laws`] | three laws in closed form, each with its name |
+
+mod closest_point;
+mod foundation;
+mod foundation_error;
+mod indentation;
+mod indentation_columns;
+pub mod laws;
+mod twist;
+mod vertex_tree;
+mod wrench;
+mod wrench_derivative;
+
+pub use closest_point::ByClosestPoint;
+pub use foundation::{
+    Application, Foundation, FoundationContact, FoundationOptions, VertexForce, layer_stiffness,
+};
+pub use foundation_error::FoundationError;
+pub use indentation::{BLOCK, Indentation, Indentations, Indented};
+pub use twist::Twist;
+pub use wrench::Wrench;
+pub use wrench_derivative::WrenchDerivative;
