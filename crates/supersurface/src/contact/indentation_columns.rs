@@ -25,12 +25,7 @@ pub(super) fn of_supertoroid(solid: &Supertoroid, points: &[Lanes; 3], out: &mut
     run(solid, layers, points, out);
 }
 
-fn run(
-    solid: &impl Indented,
-    layers: Option<Layers>,
-    points: &[Lanes; 3],
-    out: &mut Indentations,
-) {
+fn run(solid: &impl Indented, layers: Option<Layers>, points: &[Lanes; 3], out: &mut Indentations) {
     match layers {
         Some(layers) => dispatch(Fill { layers, points, out }),
         None => one_by_one(solid, points, out),
@@ -134,10 +129,12 @@ impl Job for Fill<'_> {
         for i in 0..BLOCK {
             let g = whole.norm[i];
             // on the middle of the tube there is no gradient across
-            let across =
-                if size[i] > 1e-150 { g * whole.first[i] * planar.norm[i] / offset[i] } else { 0.0 };
-            let shares =
-                [across * planar.first[i], across * planar.second[i], g * whole.second[i]];
+            let across = if size[i] > 1e-150 {
+                g * whole.first[i] * planar.norm[i] / offset[i]
+            } else {
+                0.0
+            };
+            let shares = [across * planar.first[i], across * planar.second[i], g * whole.second[i]];
             // the limit on a symmetry plane
             let share =
                 |j: usize| if points[j][i] == 0.0 { 0.0 } else { shares[j] * inverse[j][i] };
@@ -212,8 +209,10 @@ mod tests {
         let mut out = Indentations::default();
         for axes in [[0.1, 0.2, 0.3], [1e-300, 1.0, 1e300], [1e100, 1e-100, 1.0]] {
             for e in [[0.1, 2.5], [1e-300, 10.0], [1.0, 1.0]] {
-                let (tin, ring) =
-                    (Superellipsoid::new(axes, e).unwrap(), Supertoroid::new(axes, 1.0, e).unwrap());
+                let (tin, ring) = (
+                    Superellipsoid::new(axes, e).unwrap(),
+                    Supertoroid::new(axes, 1.0, e).unwrap(),
+                );
                 for _ in 0..50 {
                     let mut any = || hard[random.index(hard.len())];
                     let points = [0; 3].map(|_| [0.0; BLOCK].map(|_| any()));

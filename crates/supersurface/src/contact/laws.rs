@@ -185,8 +185,9 @@ mod tests {
                 let far = s.hypot(height);
                 2.0 * PI * s * k * (radius - far) * height / far
             });
-            let vertical =
-                integral(0.0, reach, |s| 2.0 * PI * s * k * ((radius * radius - s * s).sqrt() - height));
+            let vertical = integral(0.0, reach, |s| {
+                2.0 * PI * s * k * ((radius * radius - s * s).sqrt() - height)
+            });
             let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * k * radius.powi(3);
             assert!(close(radial, radial_sphere_on_plane(radius, depth, k)), "{depth}");
             assert!(close(vertical, vertical_sphere_on_plane(radius, depth, k)), "{depth}");

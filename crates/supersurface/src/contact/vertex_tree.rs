@@ -94,9 +94,8 @@ impl VertexTree {
 /// Sorts vertices into leaves by halving the longest side of their box, and lists the boxes.
 fn grow(vertices: &mut [Vertex], first: usize, nodes: &mut Vec<Node>) {
     let start = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
-    let (low, high) = vertices
-        .iter()
-        .fold(start, |(low, high), v| (low.inf(&v.point), high.sup(&v.point)));
+    let (low, high) =
+        vertices.iter().fold(start, |(low, high), v| (low.inf(&v.point), high.sup(&v.point)));
     // halves first: the sum of both may overflow
     let (centre, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
     let own = nodes.len();

@@ -54,11 +54,7 @@ impl Wrench {
 
     /// A wrench of that frame in the world: the reverse of [`seen_from`](Self::seen_from).
     pub fn to_world(&self, frame: &Pose) -> Self {
-        Self {
-            force: frame * self.force,
-            moment: frame * self.moment,
-            about: frame * self.about,
-        }
+        Self { force: frame * self.force, moment: frame * self.moment, about: frame * self.about }
     }
 
     pub(super) fn is_finite(&self) -> bool {

@@ -137,7 +137,8 @@ impl Sums {
         let f = self.force.cross_matrix();
         let on_mesh = blocks([[by_v, -by_w], [moment_by_v - f, self.arms - moment_by_w]]);
         // Σ [r]× [f]× is the transpose of Σ [f]× [r]×
-        let on_solid = blocks([[-by_v, by_w - f], [-moment_by_v, moment_by_w - self.arms.transpose()]]);
+        let on_solid =
+            blocks([[-by_v, by_w - f], [-moment_by_v, moment_by_w - self.arms.transpose()]]);
         let turn = solid.rotation.to_rotation_matrix().into_inner();
         let zero = Matrix3::zeros();
         let turns = blocks([[turn, zero], [zero, turn]]);

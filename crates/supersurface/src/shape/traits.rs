@@ -121,6 +121,12 @@ pub trait SecondOrder: Implicit {
     fn hessian(&self, p: &Point) -> Option<Matrix3<f64>>;
 }
 
+impl<S: SecondOrder + ?Sized> SecondOrder for &S {
+    fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
+        (**self).hessian(p)
+    }
+}
+
 /// A surface given by two angles: `eta` along the meridian, `omega` around z, in radians.
 pub trait Parametric {
     /// Ranges `[[η from, η to], [ω from, ω to]]` in which the angles cover the surface once.

@@ -7,12 +7,14 @@ use supersurface::contact::{
 };
 use supersurface::mesh::{Mesh, tessellate};
 use supersurface::nalgebra::{Matrix6, Vector6};
+use supersurface::numeric::powers::power;
 use supersurface::numeric::random::Stream;
+use supersurface::numeric::superellipse::norm;
 use supersurface::shape::{Implicit, Parametric, Posed, SecondOrder, Superellipsoid, Supertoroid};
 use supersurface::{Point, Pose, Vector};
 
 /// A square plate about the origin across z, of `count` vertices a side.
-pub(crate) fn plate(half: f64, count: u32) -> Mesh {
+fn plate(half: f64, count: u32) -> Mesh {
     let at = |i: u32| half * (2.0 * f64::from(i) / f64::from(count - 1) - 1.0);
     let vertices = (0..count * count).map(|k| Point::new(at(k % count), at(k / count), 0.0));
     let cell = |k: u32| {
@@ -26,8 +28,7 @@ pub(crate) fn plate(half: f64, count: u32) -> Mesh {
 }
 
 fn random_pose(random: &mut Stream, shift: f64) -> Pose {
-    let mut vector =
-        |size: f64| Vector::from_fn(|_, _| random.between(-size, size));
+    let mut vector = |size: f64| Vector::from_fn(|_, _| random.between(-size, size));
     Pose::new(vector(shift), vector(2.0))
 }
 
@@ -130,9 +131,7 @@ fn mechanics<S: Indented + Clone>(
     let about = found.on_mesh.about;
     let start = Wrench { about, ..Wrench::default() };
     let sum = |sign: f64| {
-        forces
-            .iter()
-            .fold(start, |sum, f| sum + Wrench::of_force(f.force * sign, &f.at, &about))
+        forces.iter().fold(start, |sum, f| sum + Wrench::of_force(f.force * sign, &f.at, &about))
     };
     same(&found.on_mesh, &sum(1.0), 1e-11);
     // action and reaction, also about other points
@@ -153,8 +152,7 @@ fn mechanics<S: Indented + Clone>(
         angular: turned(&motion.angular),
         about: frame * motion.about,
     };
-    let there =
-        foundation.press(&(frame * pose), &solid.moved(&frame), &moved, &options).unwrap();
+    let there = foundation.press(&(frame * pose), &solid.moved(&frame), &moved, &options).unwrap();
     same(&there.on_mesh.seen_from(&frame), &found.on_mesh, 1e-11);
     found.vertices
 }
@@ -175,8 +173,7 @@ fn wrenches_are_sums_of_forces_in_any_frame() {
 }
 
 /// Differences of fourth order by the coordinates of a pose as they are documented.
-fn differences(pose: &Pose, f: impl Fn(&Pose) -> Vector6<f64>) -> Matrix6<f64> {
-    let step = 1e-6;
+fn differences(pose: &Pose, step: f64, f: impl Fn(&Pose) -> Vector6<f64>) -> Matrix6<f64> {
     Matrix6::from_columns(&[0, 1, 2, 3, 4, 5].map(|k| {
         let at = |amount: f64| {
             let mut twist = Vector6::zeros();
@@ -211,29 +208,32 @@ fn derivatives<S: Indented + SecondOrder + Clone>(
         return None;
     }
     same(&found.on_mesh, &wrench.on_mesh.moved_to(&about), 1e-11);
-    let by_mesh = differences(pose, |pose| row(pose, solid));
-    let by_solid = differences(solid.pose(), |at| {
-        row(pose, &Posed::new(solid.shape().clone(), *at).unwrap())
-    });
-    let off = |a: &Matrix6<f64>, b: &Matrix6<f64>| (a - b).amax() / b.amax();
-    Some(off(&found.by_mesh, &by_mesh).max(off(&found.by_solid, &by_solid)))
+    // where a step takes a vertex over a seam or through the surface, a shorter one does not
+    let off = |step: f64| {
+        let by_mesh = differences(pose, step, |pose| row(pose, solid));
+        let by_solid = differences(solid.pose(), step, |at| {
+            row(pose, &Posed::new(solid.shape().clone(), *at).unwrap())
+        });
+        let off = |a: &Matrix6<f64>, b: &Matrix6<f64>| (a - b).amax() / a.amax();
+        off(&found.by_mesh, &by_mesh).max(off(&found.by_solid, &by_solid))
+    };
+    Some([1e-7, 1e-8, 1e-9].map(off).into_iter().fold(f64::INFINITY, f64::min))
 }
 
 #[test]
 fn derivatives_are_those_of_differences() {
     let mut random = Stream::new(22, 0);
-    let mut errors = Vec::new();
+    let mut touching = 0;
     for case in 0..60 {
         let (kind, foundation, pose) = pressed(case, &mut random);
-        errors.extend(match kind {
+        let error = match kind {
             Kind::Tin(s) => derivatives(&s, &foundation, &pose),
             Kind::Ring(s) => derivatives(&s, &foundation, &pose),
-        });
+        };
+        touching += usize::from(error.is_some());
+        assert!(error.is_none_or(|e| e < 1e-6), "case {case}: {error:?}");
     }
-    errors.sort_unstable_by(f64::total_cmp);
-    // a step that takes a vertex through the surface sees its bend
-    let clean = errors.iter().filter(|e| **e < 1e-6).count();
-    assert!(errors.len() > 50 && clean * 10 >= errors.len() * 9, "{errors:?}");
+    assert!(touching > 50, "{touching}");
 }
 
 #[test]
@@ -343,7 +343,9 @@ fn what_cannot_be_worked_with_says_why() {
             assert!(plate.forces(&still, &solid, &rest, &options).is_err());
         }
         assert!(plate.press_derivative(&still, &solid, bad, &Point::origin()).is_err());
-        assert!(layer_stiffness(bad, 0.3, 0.01).is_err() && layer_stiffness(1e6, 0.3, bad).is_err());
+        assert!(
+            layer_stiffness(bad, 0.3, 0.01).is_err() && layer_stiffness(1e6, 0.3, bad).is_err()
+        );
     }
     assert!(layer_stiffness(1e6, 0.5, 0.01).is_err());
     for bad in [f64::NAN, f64::INFINITY] {
@@ -372,23 +374,32 @@ fn row(text: &str, ratio: f64, epsilon: f64) -> Vec<f64> {
 }
 
 /// By how many percent the force of a solid with the semi-axes `axes` on a plane across z exceeds that of the exact
-/// closest points, for a depth relative to the third axis.
-fn excess(axes: [f64; 3], epsilon: f64, depth: f64) -> f64 {
+/// closest points, and that of springs that stand on the plane, for a depth relative to the third axis.
+fn excess(axes: [f64; 3], epsilon: f64, depth: f64) -> [f64; 2] {
     let solid = Superellipsoid::new(axes, [epsilon; 2]).unwrap();
     let height = (1.0 - depth) * axes[2];
     // the cut through the solid is a superellipse of this size
-    let reach = (1.0 - (1.0 - depth).powf(2.0 / epsilon)).powf(0.5 * epsilon);
-    let (unit, count) = plate(1.02, 61).into_parts();
-    let shrunk = |p: Point| Point::new(p.x * reach * axes[0], p.y * reach * axes[1], 0.0);
-    let mesh = Mesh::new(unit.into_iter().map(shrunk).collect(), count).unwrap();
+    let reach = power(1.0 - power(1.0 - depth, 2.0 / epsilon), 0.5 * epsilon);
+    let (unit, triangles) = plate(1.02, 61).into_parts();
+    let sized = |p: &Point| Point::new(p.x * reach * axes[0], p.y * reach * axes[1], 0.0);
+    let mesh = Mesh::new(unit.iter().map(sized).collect(), triangles).unwrap();
     let foundation = Foundation::new(&mesh).unwrap();
     let pose = Pose::translation(0.0, 0.0, height);
-    let (rest, options) = (Twist::default(), springs(1.0));
-    let exact = ByClosestPoint::superellipsoid(&solid);
-    let still = Pose::identity();
-    let radial = foundation.press(&still, &Posed::new(solid, pose).unwrap(), &rest, &options);
-    let exact = foundation.press(&still, &Posed::new(&exact, pose).unwrap(), &rest, &options);
-    100.0 * (radial.unwrap().on_solid.force.z / exact.unwrap().on_solid.force.z - 1.0)
+    let press = |solid: &dyn Indented| {
+        let (still, rest) = (Pose::identity(), Twist::default());
+        let solid = Posed::new(solid, pose).unwrap();
+        foundation.press(&still, &solid, &rest, &springs(1.0)).unwrap().on_solid.force.z
+    };
+    let radial = press(&solid);
+    let exact = press(&ByClosestPoint::superellipsoid(&solid));
+    let rise = |(index, area): (u32, f64)| {
+        let planar =
+            reach * norm(unit[index as usize].x.abs(), unit[index as usize].y.abs(), 2.0 / epsilon);
+        let top = power(1.0 - power(planar.min(1.0), 2.0 / epsilon), 0.5 * epsilon);
+        area * (axes[2] * top - height).max(0.0)
+    };
+    let volume: f64 = foundation.areas().map(rise).sum();
+    [exact, volume].map(|law| 100.0 * (radial / law - 1.0))
 }
 
 const RATIOS: [f64; 3] = [1.0, 3.0, 10.0];
@@ -402,8 +413,9 @@ fn the_table_of_forces_is_true() {
     for ratio in RATIOS {
         for epsilon in EPSILONS {
             let tip = DEPTHS.map(|d| excess([1.0, 1.0, ratio], epsilon, d));
-            let side = DEPTHS.map(|d| excess([ratio, 1.0, 1.0], epsilon, d));
-            let found = [tip, side].concat();
+            let found = tip.concat();
+            let lying = DEPTHS.map(|d| excess([ratio, 1.0, 1.0], epsilon, d)[0]);
+            assert!(lying.iter().all(|e| e.abs() < 1.1), "{ratio} {epsilon}: {lying:?}");
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 0.06 + 0.01 * b.abs();
             let told = row(text, ratio, epsilon);
             if told.len() != found.len() || !found.iter().zip(&told).all(near) {
