@@ -8,10 +8,12 @@
 use std::hint::black_box;
 
 use cpu_time::ProcessTime;
-use supersurface::contact::{ByClosestPoint, Foundation, FoundationOptions, Indented, Twist};
+use supersurface::contact::{
+    ByClosestPoint, Foundation, FoundationOptions, SmoothlyIndented, Twist,
+};
 use supersurface::mesh::tessellate;
 use supersurface::numeric::random::Stream;
-use supersurface::shape::{Implicit, Posed, SecondOrder, Superellipsoid, Supertoroid};
+use supersurface::shape::{Implicit, Posed, Superellipsoid, Supertoroid};
 use supersurface::{Point, Pose, Vector};
 
 /// Poses of the mesh, and runs over them of which the best counts.
@@ -62,7 +64,7 @@ fn timed(poses: &[Pose], mut run: impl FnMut(&Pose)) -> f64 {
     (0..RUNS).map(once).fold(f64::INFINITY, f64::min)
 }
 
-fn report<S: Indented + SecondOrder>(name: &str, shape: &S, foundation: &Foundation) {
+fn report<S: SmoothlyIndented>(name: &str, shape: &S, foundation: &Foundation) {
     let solid = Posed::new(shape, Pose::identity()).unwrap();
     let (rest, options) = (Twist::default(), FoundationOptions::default());
     let poses = poses(shape);

@@ -10,12 +10,12 @@ use crate::{Direction, Point, Vector};
 /// ```
 /// use supersurface::{Point, contact::{ByClosestPoint, Indented}, shape::Superellipsoid};
 /// let egg = Superellipsoid::new([0.03, 0.03, 0.09], [1.0, 1.0])?;
-/// let p = Point::new(0.005, 0.0, 0.085);
+/// let p = Point::new(0.02, 0.0, 0.06);
 /// let [radial, exact] = [
 ///     egg.indentation(&p).unwrap().depth,
 ///     ByClosestPoint::superellipsoid(&egg).indentation(&p).unwrap().depth,
 /// ];
-/// assert!(exact < radial && radial < 1.02 * exact);
+/// assert!(exact < radial && radial < 1.1 * exact);
 /// # Ok::<(), supersurface::shape::InvalidShape>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -364,7 +364,7 @@ impl Job for Push<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let Self { block, found, law, sums } = self;
-        let mut out = [[0.0; BLOCK]; 6];
+        let (mut forces, mut moments) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; 3]);
         for i in 0..BLOCK {
             let depth = found.depths[i];
             let n = [found.normals[0][i], found.normals[1][i], found.normals[2][i]];
@@ -382,13 +382,13 @@ impl Job for Push<'_> {
             let f: [f64; 3] = std::array::from_fn(|k| push * fused::<FUSED>(-drag, slip[k], n[k]));
             let m = cross::<FUSED>(at, f);
             for k in 0..3 {
-                out[k][i] = f[k];
-                out[3 + k][i] = m[k];
+                forces[k][i] = f[k];
+                moments[k][i] = m[k];
             }
         }
         for k in 0..3 {
-            sums.force[k] += total(&out[k]);
-            sums.moment[k] += total(&out[3 + k]);
+            sums.force[k] += total(&forces[k]);
+            sums.moment[k] += total(&moments[k]);
         }
         for (depth, area) in found.depths.iter().zip(&block.areas) {
             let inside = *depth > 0.0 && *area > 0.0;

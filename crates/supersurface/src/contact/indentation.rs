@@ -25,6 +25,8 @@
 //! | 10 | 1 | 0.3 / 1.9 % | 1.8 / 10.3 % | 3.5 / 22.6 % |
 //! | 10 | 0.3 | 0.8 / 2.4 % | 4.5 / 13.1 % | 9.7 / 28.9 % |
 
+use super::gauge_columns::Layers;
+use super::indentation_columns::fill;
 use crate::shape::{
     Implicit, Posed, RadialExtended, Supercylinder, Superellipsoid, Supershape, Supertoroid,
 };
@@ -100,19 +102,36 @@ pub trait Indented: Implicit {
 
     /// The same for many points, as columns of coordinates: what a hot loop calls, up to rounding.
     fn indentations(&self, points: &[[f64; BLOCK]; 3], out: &mut Indentations) {
-        for i in 0..BLOCK {
-            let found = self.indentation(&Point::new(points[0][i], points[1][i], points[2][i]));
-            out.depths[i] = found.map_or(0.0, |f| f.depth);
-            for (k, column) in out.normals.iter_mut().enumerate() {
-                column[i] = found.map_or(0.0, |f| f.normal[k]);
-            }
+        one_by_one(self, points, out);
+    }
+}
+
+/// One point of a block.
+pub(super) fn point_of(points: &[[f64; BLOCK]; 3], i: usize) -> Point {
+    Point::from(points.each_ref().map(|column| column[i]))
+}
+
+/// The plain version of [`Indented::indentations`].
+pub(super) fn one_by_one(
+    solid: &(impl Indented + ?Sized),
+    points: &[[f64; BLOCK]; 3],
+    out: &mut Indentations,
+) {
+    for i in 0..BLOCK {
+        let found = solid.indentation(&point_of(points, i));
+        out.depths[i] = found.map_or(0.0, |f| f.depth);
+        for (k, column) in out.normals.iter_mut().enumerate() {
+            column[i] = found.map_or(0.0, |f| f.normal[k]);
         }
     }
 }
 
 impl Indented for Superellipsoid {
     fn indentations(&self, points: &[[f64; BLOCK]; 3], out: &mut Indentations) {
-        super::indentation_columns::of_superellipsoid(self, points, out);
+        match Layers::of_superellipsoid(self) {
+            Some(layers) => fill(layers, points, out),
+            None => one_by_one(self, points, out),
+        }
     }
 }
 
@@ -123,7 +142,10 @@ impl Indented for Supertoroid {
     }
 
     fn indentations(&self, points: &[[f64; BLOCK]; 3], out: &mut Indentations) {
-        super::indentation_columns::of_supertoroid(self, points, out);
+        match Layers::of_supertoroid(self) {
+            Some(layers) => fill(layers, points, out),
+            None => one_by_one(self, points, out),
+        }
     }
 }
 

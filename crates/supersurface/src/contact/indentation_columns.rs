@@ -1,69 +1,14 @@
-//! Depths and normals of a block of points, in stages without a branch.
-//!
-//! Superellipsoid and supertoroid have one gauge, two norms one in the other with `ρ̂ - a4` between them, where a
-//! superellipsoid has `a4 = 0`. The norms are taken in logarithms: `s = p ln(u/v)`, `t = e^-|s|`, norm
-//! `max(u, v) (1 + t)^(1/p)`, weights `1/(1 + t)` and `t/(1 + t)`. [`Indented::indentation`] is the reference.
+//! Depths and normals of a block of points; [`Indented::indentation`] is the reference.
 
-use super::indentation::{BLOCK, Indentations, Indented};
-use crate::Point;
-use crate::numeric::lanes::{Job, dispatch, exp, fused, ln};
-use crate::shape::{Superellipsoid, Supertoroid};
+use super::gauge_columns::{Lanes, Layers, Stages};
+use super::indentation::{BLOCK, Indentations};
+use crate::numeric::lanes::{Job, dispatch, fused};
 
-type Lanes = [f64; BLOCK];
+#[cfg(doc)]
+use super::indentation::Indented;
 
-pub(super) fn of_superellipsoid(
-    solid: &Superellipsoid,
-    points: &[Lanes; 3],
-    out: &mut Indentations,
-) {
-    let layers = Layers::new(solid.semi_axes(), 0.0, solid.exponents());
-    run(solid, layers, points, out);
-}
-
-pub(super) fn of_supertoroid(solid: &Supertoroid, points: &[Lanes; 3], out: &mut Indentations) {
-    let layers = Layers::new(solid.semi_axes(), solid.ring_ratio(), solid.exponents());
-    run(solid, layers, points, out);
-}
-
-fn run(solid: &impl Indented, layers: Option<Layers>, points: &[Lanes; 3], out: &mut Indentations) {
-    match layers {
-        Some(layers) => dispatch(Fill { layers, points, out }),
-        None => one_by_one(solid, points, out),
-    }
-}
-
-/// For numbers that logarithms of quotients cannot carry.
-fn one_by_one(solid: &impl Indented, points: &[Lanes; 3], out: &mut Indentations) {
-    for i in 0..BLOCK {
-        let found = solid.indentation(&Point::new(points[0][i], points[1][i], points[2][i]));
-        out.depths[i] = found.map_or(0.0, |f| f.depth);
-        for (k, column) in out.normals.iter_mut().enumerate() {
-            column[i] = found.map_or(0.0, |f| f.normal[k]);
-        }
-    }
-}
-
-struct Layers {
-    axes: [f64; 3],
-    inverse: [f64; 3],
-    ring: f64,
-    /// `2/ε`, and `ε/2`.
-    p: [f64; 2],
-    half: [f64; 2],
-}
-
-impl Layers {
-    fn new(axes: [f64; 3], ring: f64, exponents: [f64; 2]) -> Option<Self> {
-        let ordinary = axes.iter().all(|a| (1e-100..=1e100).contains(a))
-            && exponents.iter().all(|e| *e >= 1e-3);
-        ordinary.then(|| Self {
-            axes,
-            inverse: axes.map(|a| 1.0 / a),
-            ring,
-            p: exponents.map(|e| 2.0 / e),
-            half: exponents.map(|e| 0.5 * e),
-        })
-    }
+pub(super) fn fill(layers: Layers, points: &[Lanes; 3], out: &mut Indentations) {
+    dispatch(Fill { layers, points, out });
 }
 
 struct Fill<'a> {
@@ -72,96 +17,32 @@ struct Fill<'a> {
     out: &'a mut Indentations,
 }
 
-/// The norm of positive pairs with both weights.
-struct Norm {
-    norm: Lanes,
-    first: Lanes,
-    second: Lanes,
-}
-
-impl Norm {
-    /// Of `(u, v)`, given with `1/v`.
-    #[inline(always)]
-    fn new<const FUSED: bool>(u: &Lanes, v: &Lanes, inverse: &Lanes, p: f64, half: f64) -> Self {
-        let mut out = Self { norm: [0.0; BLOCK], first: [0.0; BLOCK], second: [0.0; BLOCK] };
-        let mut spread = [0.0; BLOCK];
-        for i in 0..BLOCK {
-            spread[i] = p * ln::<FUSED>(u[i] * inverse[i]);
-        }
-        let mut t = [0.0; BLOCK];
-        for i in 0..BLOCK {
-            t[i] = exp::<FUSED>(-spread[i].abs());
-        }
-        for i in 0..BLOCK {
-            let major = 1.0 / (1.0 + t[i]);
-            let minor = t[i] * major;
-            let larger = if u[i] > v[i] { u[i] } else { v[i] };
-            out.first[i] = if spread[i] > 0.0 { major } else { minor };
-            out.second[i] = if spread[i] > 0.0 { minor } else { major };
-            out.norm[i] = larger * exp::<FUSED>(half * ln::<FUSED>(1.0 + t[i]));
-        }
-        out
-    }
-}
-
 impl Job for Fill<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let Self { layers: k, points, out } = self;
-        let none = [[0.0; BLOCK]; 3];
-        let (mut inverse, mut scaled, mut unscaled) = (none, none, none);
-        for j in 0..3 {
-            for i in 0..BLOCK {
-                let c = off_zero(points[j][i]);
-                inverse[j][i] = 1.0 / c;
-                scaled[j][i] = c.abs() * k.inverse[j];
-                unscaled[j][i] = inverse[j][i].abs() * k.axes[j];
-            }
-        }
-        let ([u, v, w], [_, iv, iw]) = (&scaled, &unscaled);
-        let planar = Norm::new::<FUSED>(u, v, iv, k.p[1], k.half[1]);
-        let (mut offset, mut size) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let Stages { whole, gradient: [x, y, z], .. } =
+            Stages::new::<FUSED>(&self.layers, self.points);
+        let Indentations { depths, normals: [nx, ny, nz] } = self.out;
         for i in 0..BLOCK {
-            offset[i] = off_zero(planar.norm[i] - k.ring);
-            size[i] = offset[i].abs();
-        }
-        let whole = Norm::new::<FUSED>(&size, w, iw, k.p[0], k.half[0]);
-        for i in 0..BLOCK {
-            let g = whole.norm[i];
-            // on the middle of the tube there is no gradient across
-            let across = if size[i] > 1e-150 {
-                g * whole.first[i] * planar.norm[i] / offset[i]
-            } else {
-                0.0
-            };
-            let shares = [across * planar.first[i], across * planar.second[i], g * whole.second[i]];
-            // the limit on a symmetry plane
-            let share =
-                |j: usize| if points[j][i] == 0.0 { 0.0 } else { shares[j] * inverse[j][i] };
-            let [x, y, z] = [share(0), share(1), share(2)];
-            let slope = fused::<FUSED>(x, x, fused::<FUSED>(y, y, z * z)).sqrt();
-            let inside = g < 1.0 && slope > 0.0;
+            let square = fused::<FUSED>(x[i], x[i], fused::<FUSED>(y[i], y[i], z[i] * z[i]));
+            let slope = square.sqrt();
+            let room = 1.0 - whole.norm[i];
+            let inside = room > 0.0 && slope > 0.0;
             let unit = 1.0 / slope;
-            out.depths[i] = if inside { (1.0 - g) * unit } else { 0.0 };
-            out.normals[0][i] = if inside { x * unit } else { 0.0 };
-            out.normals[1][i] = if inside { y * unit } else { 0.0 };
-            out.normals[2][i] = if inside { z * unit } else { 0.0 };
+            depths[i] = if inside { room * unit } else { 0.0 };
+            nx[i] = if inside { x[i] * unit } else { 0.0 };
+            ny[i] = if inside { y[i] * unit } else { 0.0 };
+            nz[i] = if inside { z[i] * unit } else { 0.0 };
         }
     }
-}
-
-/// Not nearer to 0 than 1e-150: there the limits are the same, and no quotient is 0/0.
-#[inline(always)]
-fn off_zero(v: f64) -> f64 {
-    let floor = 1e-150f64.copysign(v);
-    if v.abs() < 1e-150 { floor } else { v }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vector;
+    use crate::contact::indentation::{Indented, one_by_one, point_of};
     use crate::numeric::random::Stream;
+    use crate::shape::{Superellipsoid, Supertoroid};
 
     fn agrees(solid: &impl Indented, random: &mut Stream, case: usize) {
         let [low, high] = solid.bounds();
@@ -180,7 +61,7 @@ mod tests {
         one_by_one(solid, &points, &mut plain);
         for i in 0..BLOCK {
             let off = (found.depths[i] - plain.depths[i]).abs();
-            let at = Vector::new(points[0][i], points[1][i], points[2][i]);
+            let at = point_of(&points, i);
             assert!(off < 1e-12 * size, "case {case} {at}: {off}");
             for k in 0..3 {
                 let off = (found.normals[k][i] - plain.normals[k][i]).abs();

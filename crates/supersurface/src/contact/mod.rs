@@ -9,9 +9,12 @@
 mod closest_point;
 mod foundation;
 mod foundation_error;
+mod gauge_columns;
 mod indentation;
 mod indentation_columns;
+mod indentation_slope;
 pub mod laws;
+mod slope_columns;
 mod twist;
 mod vertex_tree;
 mod wrench;
@@ -23,6 +26,7 @@ pub use foundation::{
 };
 pub use foundation_error::FoundationError;
 pub use indentation::{BLOCK, Indentation, Indentations, Indented};
+pub use indentation_slope::{IndentationSlope, IndentationSlopes, SmoothlyIndented};
 pub use twist::Twist;
 pub use wrench::Wrench;
 pub use wrench_derivative::WrenchDerivative;

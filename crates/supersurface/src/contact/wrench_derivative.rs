@@ -1,30 +1,26 @@
 //! How the wrench of a foundation changes with the poses of both bodies: what an optimiser of trajectories asks for.
 //!
-//! For springs alone, without damping and friction. A vertex at `x` with the indentation `I = (1 - g)/|∇g|² ∇g` feels
-//! `f = k A I`, and the indentation changes with the vertex, in the solid's frame, by
-//!
-//! ```text
-//! J = ∂I/∂x = ((1 - g)(H - 2 ∇g (H∇g)ᵀ/|∇g|²) - ∇g ∇gᵀ)/|∇g|²
-//! ```
-//!
-//! with the second derivatives `H` of the gauge. With `r = x - o`, twists `(v, ω)` of each body about `o` give
+//! For springs alone, without damping and friction. A vertex at `x` feels `f = k A I` with the indentation `I` of equation
+//! (46), and `I` changes with the vertex by `J` ([`SmoothlyIndented`]). With `r = x - o`, twists `(v, ω)` of each body about
+//! `o` give
 //!
 //! ```text
 //! mesh    df =  k A J (v + ω × r)              dm = r × df + (v + ω × r) × f
 //! solid   df = -k A J (v + ω × r) + ω × f      dm = r × df
 //! ```
 //!
-//! `J` is not symmetric: the normals of equation (46) are those of the foot, and the work of its forces along a closed way
-//! need not vanish. Vertices that come in or go out do so with no force, so the wrench is continuous, and its derivative
-//! jumps by `k A n nᵀ` as each of them passes the surface.
+//! Vertices that come in or go out do so with no force, so the wrench is continuous, and its derivative jumps by `k A n nᵀ`
+//! as each of them passes the surface.
 
 use nalgebra::{Matrix3, Matrix6};
 
-use super::foundation::Foundation;
+use super::foundation::{Block, Foundation};
 use super::foundation_error::FoundationError;
-use super::indentation::Indented;
+use super::indentation::BLOCK;
+use super::indentation_slope::{IndentationSlopes, SmoothlyIndented};
 use super::wrench::Wrench;
-use crate::shape::{Posed, SecondOrder};
+use crate::numeric::lanes::{Job, dispatch, dot, fused};
+use crate::shape::Posed;
 use crate::{Point, Pose, Vector};
 
 /// A wrench with its derivatives by the poses of both bodies.
@@ -42,8 +38,8 @@ pub struct WrenchDerivative {
     pub by_mesh: Matrix6<f64>,
     /// By the pose of the solid.
     pub by_solid: Matrix6<f64>,
-    /// Vertices that lie on a seam where the surface has no curvature or an infinite one: there the second derivatives are
-    /// taken as 0. Elsewhere, and wherever this is 0, the derivatives are exact.
+    /// Vertices that lie exactly on a seam where the surface has no curvature or an infinite one: there the second
+    /// derivatives are taken as 0. Where this is 0 the derivatives are exact.
     pub without_curvature: usize,
 }
 
@@ -66,7 +62,7 @@ impl Foundation {
     /// assert!(found.by_mesh[(0, 0)] < 0.0 && (found.by_mesh[(0, 0)] / slope - 1.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn press_derivative<S: Indented + SecondOrder>(
+    pub fn press_derivative<S: SmoothlyIndented>(
         &self,
         pose: &Pose,
         solid: &Posed<S>,
@@ -75,57 +71,82 @@ impl Foundation {
     ) -> Result<WrenchDerivative, FoundationError> {
         FoundationError::positive("stiffness", stiffness)?;
         FoundationError::finite("a coordinate of the point", about.iter())?;
-        let origin = solid.to_local(about).coords;
-        let mut sums = Sums::default();
+        let origin = solid.to_local(about).coords.into();
+        let (mut slopes, mut sums) = (IndentationSlopes::default(), Sums::default());
         self.gather(pose, solid, |block| {
-            for i in 0..block.count {
-                let q = Vector::from_fn(|k, _| block.points[k][i]);
-                sums.add(solid.shape(), &q, &(q - origin), block.areas[i]);
-            }
+            solid.shape().slopes(&block.points, &mut slopes);
+            dispatch(Add { block, slopes: &slopes, origin, sums: &mut sums });
         })?;
         sums.derivative(pose, solid.pose(), stiffness, about)
     }
 }
 
-/// Sums over vertices for `k = 1`, in the solid's axes, arms from the point.
+/// Sums over vertices for `k = 1`, in the solid's axes, with arms `r` from the point.
 #[derive(Default)]
 struct Sums {
     force: Vector,
-    moment: Vector,
-    /// `Σ A J`, `Σ A J [r]×`, `Σ A [r]× J`, `Σ A [r]× J [r]×`.
-    spring: [Matrix3<f64>; 4],
-    /// `Σ [f]× [r]×`.
+    /// `Σ A (J, [r]× J; J [r]×ᵀ, [r]× J [r]×ᵀ)`, by columns.
+    spring: Matrix6<f64>,
+    /// `Σ r fᵀ`.
     arms: Matrix3<f64>,
-    without_curvature: usize,
+    without_curvature: f64,
+}
+
+/// Adds a block of vertices.
+struct Add<'a> {
+    block: &'a Block,
+    slopes: &'a IndentationSlopes,
+    origin: [f64; 3],
+    sums: &'a mut Sums,
+}
+
+impl Job for Add<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Self { block, slopes, origin, sums } = self;
+        let mut arms = block.points;
+        for (arm, o) in arms.iter_mut().zip(origin) {
+            arm.iter_mut().for_each(|v| *v -= o);
+        }
+        let mut weighted = arms;
+        for column in &mut weighted {
+            column.iter_mut().zip(&block.areas).for_each(|(v, area)| *v *= area);
+        }
+        for (r, (arm, own)) in weighted.iter().zip(&slopes.vectors).enumerate() {
+            sums.force[r] += dot::<FUSED>(&block.areas, own);
+            for (c, vector) in slopes.vectors.iter().enumerate() {
+                sums.arms[(r, c)] += dot::<FUSED>(arm, vector);
+            }
+        }
+        // the columns of (J; [r]× J)
+        let mut tall = [[[0.0; BLOCK]; 6]; 3];
+        for (c, column) in tall.iter_mut().enumerate() {
+            for r in 0..3 {
+                let (next, last) = ((r + 1) % 3, (r + 2) % 3);
+                column[r] = slopes.by_point[r][c];
+                for i in 0..BLOCK {
+                    let turned = arms[last][i] * slopes.by_point[next][c][i];
+                    column[r + 3][i] =
+                        fused::<FUSED>(arms[next][i], slopes.by_point[last][c][i], -turned);
+                }
+            }
+        }
+        // and what [r]×ᵀ makes of its rows
+        for c in 0..3 {
+            let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+            for (r, own) in tall[c].iter().enumerate() {
+                sums.spring[(r, c)] += dot::<FUSED>(&block.areas, own);
+                sums.spring[(r, c + 3)] += dot::<FUSED>(&weighted[next], &tall[last][r])
+                    - dot::<FUSED>(&weighted[last], &tall[next][r]);
+            }
+        }
+        for (seam, area) in slopes.without_curvature.iter().zip(&block.areas) {
+            sums.without_curvature += if *area > 0.0 { *seam } else { 0.0 };
+        }
+    }
 }
 
 impl Sums {
-    fn add<S: Indented + SecondOrder>(&mut self, solid: &S, q: &Vector, r: &Vector, area: f64) {
-        let q = Point::from(*q);
-        let (room, gradient) = (1.0 - solid.gauge(&q), solid.gradient(&q));
-        let square = gradient.norm_squared();
-        if !(room > 0.0 && square > 0.0) {
-            return;
-        }
-        let hessian = solid.hessian(&q).unwrap_or_else(|| {
-            self.without_curvature += 1;
-            Matrix3::zeros()
-        });
-        let bend = hessian - gradient * (hessian * gradient).transpose() * (2.0 / square);
-        let by_point = (bend * room - gradient * gradient.transpose()) * (area / square);
-        let force = gradient * (area * room / square);
-        let arm = r.cross_matrix();
-        self.force += force;
-        self.moment += r.cross(&force);
-        let turned = by_point * arm;
-        for (sum, part) in
-            self.spring.iter_mut().zip([by_point, turned, arm * by_point, arm * turned])
-        {
-            *sum += part;
-        }
-        self.arms += force.cross_matrix() * arm;
-    }
-
     fn derivative(
         &self,
         mesh: &Pose,
@@ -133,27 +154,29 @@ impl Sums {
         stiffness: f64,
         about: &Point,
     ) -> Result<WrenchDerivative, FoundationError> {
-        let [by_v, by_w, moment_by_v, moment_by_w] = self.spring;
-        let f = self.force.cross_matrix();
-        let on_mesh = blocks([[by_v, -by_w], [moment_by_v - f, self.arms - moment_by_w]]);
-        // Σ [r]× [f]× is the transpose of Σ [f]× [r]×
-        let on_solid =
-            blocks([[-by_v, by_w - f], [-moment_by_v, moment_by_w - self.arms.transpose()]]);
-        let turn = solid.rotation.to_rotation_matrix().into_inner();
+        let force = self.force.cross_matrix();
+        // Σ [f]× [r]× = Σ r fᵀ - Σ (f·r), and its transpose is Σ [r]× [f]×
+        let arms = self.arms - Matrix3::identity() * self.arms.trace();
         let zero = Matrix3::zeros();
+        let on_mesh = self.spring + blocks([[zero, zero], [-force, arms]]);
+        let on_solid = -self.spring - blocks([[zero, force], [zero, arms.transpose()]]);
+        let turn = solid.rotation.to_rotation_matrix().into_inner();
         let turns = blocks([[turn, zero], [zero, turn]]);
-        let scaled = |m: nalgebra::Matrix6<f64>, body: &Pose| {
-            turns * m * turns.transpose() * twist_by_pose(body, about) * stiffness
+        let by_pose = |by_twist: Matrix6<f64>, body: &Pose| {
+            turns * by_twist * turns.transpose() * twist_by_pose(body, about) * stiffness
         };
+        // Σ r × f from the skew part of Σ r fᵀ
+        let skew = self.arms - self.arms.transpose();
+        let moment = Vector::new(skew[(1, 2)], skew[(2, 0)], skew[(0, 1)]);
         let found = WrenchDerivative {
             on_mesh: Wrench {
                 force: turn * self.force * stiffness,
-                moment: turn * self.moment * stiffness,
+                moment: turn * moment * stiffness,
                 about: *about,
             },
-            by_mesh: scaled(on_mesh, mesh),
-            by_solid: scaled(on_solid, solid),
-            without_curvature: self.without_curvature,
+            by_mesh: by_pose(on_mesh, mesh),
+            by_solid: by_pose(on_solid, solid),
+            without_curvature: self.without_curvature as usize,
         };
         let finite = found.by_mesh.iter().chain(&found.by_solid).all(|v| v.is_finite());
         if finite && found.on_mesh.is_finite() { Ok(found) } else { Err(FoundationError::Overflow) }

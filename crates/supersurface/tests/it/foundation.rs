@@ -2,15 +2,15 @@
 
 use supersurface::contact::laws::radial_sphere_on_plane;
 use supersurface::contact::{
-    Application, ByClosestPoint, Foundation, FoundationError, FoundationOptions, Indented, Twist,
-    Wrench, layer_stiffness,
+    Application, ByClosestPoint, Foundation, FoundationError, FoundationOptions, Indented,
+    SmoothlyIndented, Twist, Wrench, layer_stiffness,
 };
 use supersurface::mesh::{Mesh, tessellate};
 use supersurface::nalgebra::{Matrix6, Vector6};
 use supersurface::numeric::powers::power;
 use supersurface::numeric::random::Stream;
 use supersurface::numeric::superellipse::norm;
-use supersurface::shape::{Implicit, Parametric, Posed, SecondOrder, Superellipsoid, Supertoroid};
+use supersurface::shape::{Implicit, Parametric, Posed, Superellipsoid, Supertoroid};
 use supersurface::{Point, Pose, Vector};
 
 /// A square plate about the origin across z, of `count` vertices a side.
@@ -21,7 +21,7 @@ fn plate(half: f64, count: u32) -> Mesh {
         let a = k / (count - 1) * count + k % (count - 1);
         let (b, c, d) = (a + 1, a + count + 1, a + count);
         // diagonals turn, so that all inner vertices have one area
-        if k % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        if k.is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     };
     let triangles = (0..(count - 1) * (count - 1)).flat_map(cell).collect();
     Mesh::new(vertices.collect(), triangles).unwrap()
@@ -187,7 +187,7 @@ fn differences(pose: &Pose, step: f64, f: impl Fn(&Pose) -> Vector6<f64>) -> Mat
     }))
 }
 
-fn derivatives<S: Indented + SecondOrder + Clone>(
+fn derivatives<S: SmoothlyIndented + Clone>(
     solid: &Posed<S>,
     foundation: &Foundation,
     pose: &Pose,
