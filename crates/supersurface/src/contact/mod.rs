@@ -7,10 +7,11 @@
 //! | what a force should be | [`laws`] | three laws in closed form, each with its name |
 
 mod closest_point;
-mod foundation;
+pub mod foundation;
+mod foundation_columns;
 mod foundation_error;
 mod gauge_columns;
-mod indentation;
+pub mod indentation;
 mod indentation_columns;
 mod indentation_slope;
 pub mod laws;

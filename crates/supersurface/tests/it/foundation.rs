@@ -57,6 +57,26 @@ fn a_sphere_on_a_plane_is_the_law_of_radial_indentations() {
     }
 }
 
+#[test]
+fn a_ring_on_a_plane_is_the_law_of_its_section() {
+    // around the ring r of a tube, per length the springs of its section: those within and without make up for each
+    // other's circumference
+    let (ring, tube) = (0.06, 0.02);
+    let solid = Supertoroid::new([tube; 3], ring / tube, [1.0, 1.0]).unwrap();
+    for depth in [2e-4, 1e-3, 5e-3] {
+        let height = tube - depth;
+        let reach = f64::sqrt(tube * tube - height * height);
+        let springs_of_section = tube * (reach / height).asinh() - reach;
+        let law = 4.0 * std::f64::consts::PI * ring * 2e6 * height * springs_of_section;
+        let foundation = Foundation::new(&plate(0.085, 301)).unwrap();
+        let solid = Posed::new(solid, Pose::translation(0.0, 0.0, height)).unwrap();
+        let found =
+            foundation.press(&Pose::identity(), &solid, &Twist::default(), &springs(2e6)).unwrap();
+        let error = found.on_solid.force.z / law - 1.0;
+        assert!(error.abs() < 0.01, "depth {depth}: {error} with {} points", found.vertices);
+    }
+}
+
 /// Each kind of solid with a mesh that reaches into it.
 fn pressed(case: u64, random: &mut Stream) -> (Kind, Foundation, Pose) {
     let axes = [0; 3].map(|_| random.between(0.03, 0.1));
