@@ -12,9 +12,9 @@
 //! other members with a radial gauge, and supertoroids by the gauge of their section.
 //!
 //! What is not guaranteed: that `I` leads to the closest point. It does on a sphere, on flat faces and in the limit of
-//! shallow depth; elsewhere the radial foot lies beside it and the depth is too large. Of points at equal angles under the
-//! surface of solids with the semi-axes 1, 1, r and both exponents ε, at depths in shares of the smallest semi-axis, by so
-//! much (median / largest) over [`ByClosestPoint`](super::ByClosestPoint):
+//! shallow depth; elsewhere the radial foot lies beside it, and in a convex solid the depth is too large. Of points at equal
+//! angles under the surface of superellipsoids with the semi-axes 1, 1, r and both exponents ε, at depths in shares of the
+//! smallest semi-axis, by so much (median / largest) over [`ByClosestPoint`](super::ByClosestPoint):
 //!
 //! | r | ε | depth 1 % | 5 % | 10 % |
 //! |--:|--:|--:|--:|--:|

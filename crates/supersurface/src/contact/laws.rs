@@ -8,6 +8,7 @@
 //!
 //! A [`Foundation`](super::Foundation) on a plane converges to the first; Drake's and Simbody's foundations to the second.
 //! Springs feel nothing of their neighbours: twice the depth gives four times the force, Hertz's solids 2.83 times.
+//! Radii, stiffnesses and moduli are positive; the plain formulas do not check it.
 
 use std::f64::consts::PI;
 
