@@ -15,7 +15,7 @@
 //! | 6 | [`cloud`] | point clouds, organised or not; neighbours; the unit mix-up |
 //! | 6 | [`mesh`] | watertight triangle meshes; points spread evenly on curves and surfaces |
 //! | 7 | [`segment`], [`fit`] | table plane and what stands on it; one supersurface per object |
-//! | 7 | [`contact`] | distance, depth, witness points and normals of convex bodies, with bounds |
+//! | 7 | [`contact`] | distance and depth of convex bodies, with bounds; meshes pressed into supersurfaces |
 //! | 8 | [`separate`] | things that touch told apart, pieces of one thing put together |
 //! | 8 | [`grasp`], [`scene`] | ranked grasps; scenes seen by a simulated depth camera |
 //! | 9 | [`pipeline`], [`picture`] | cloud to grasps in one call; pixels on the CPU |

@@ -1,15 +1,22 @@
-//! Floor 7: where two things touch, how far apart or how deep in each other they are.
+//! Floor 7: where two things touch, how far apart or how deep in each other they are, and with what force.
+//!
+//! | for | use | holds |
+//! |---|---|---|
+//! | two convex bodies | [`pair`], [`intersect`], [`certify`] | signed distance, normal, witness points, and bounds of the distance |
+//! | the same in an optimisation | [`differentiate`] | derivatives by both poses and shapes |
+//! | how deep a point lies in a solid | [`Indented`], [`ByClosestPoint`] | equation (46) without iteration; the exact closest point |
+//! | a mesh against a supersurface | [`Foundation`] | forces of an elastic layer, wrench on both bodies, derivatives by both poses |
+//! | what a force should be | [`laws`] | three laws in closed form, each with its name |
 
-mod cells;
-mod chart;
-mod continuation;
-mod convex;
-mod derivative;
-mod descent;
-mod difference;
+pub mod elastic;
 mod pair;
-mod witness;
 
-pub use convex::Convex;
-pub use derivative::{BodyDerivative, differentiate};
-pub use pair::{Contact, WarmStart, certify, intersect, pair};
+pub use elastic::laws;
+pub use elastic::{
+    Application, BLOCK, ByClosestPoint, Foundation, FoundationContact, FoundationError,
+    FoundationOptions, Indentation, IndentationSlope, IndentationSlopes, Indentations, Indented,
+    SmoothlyIndented, Twist, VertexForce, Wrench, WrenchDerivative, layer_stiffness,
+};
+pub use pair::{
+    BodyDerivative, Contact, Convex, WarmStart, certify, differentiate, intersect, pair,
+};

@@ -93,10 +93,38 @@ impl<S: Implicit + ?Sized> Implicit for Box<S> {
     }
 }
 
+impl<S: Implicit + ?Sized> Implicit for &S {
+    fn gauge(&self, p: &Point) -> f64 {
+        (**self).gauge(p)
+    }
+
+    fn gradient(&self, p: &Point) -> Vector {
+        (**self).gradient(p)
+    }
+
+    fn bounds(&self) -> [Point; 2] {
+        (**self).bounds()
+    }
+
+    fn extent(&self, n: &Vector) -> f64 {
+        (**self).extent(n)
+    }
+
+    fn is_convex(&self) -> bool {
+        (**self).is_convex()
+    }
+}
+
 /// A gauge with second derivatives.
 pub trait SecondOrder: Implicit {
     /// Second derivatives of the gauge, in 1/m², symmetric; `None` where they do not exist or are infinite.
     fn hessian(&self, p: &Point) -> Option<Matrix3<f64>>;
+}
+
+impl<S: SecondOrder + ?Sized> SecondOrder for &S {
+    fn hessian(&self, p: &Point) -> Option<Matrix3<f64>> {
+        (**self).hessian(p)
+    }
 }
 
 /// A surface given by two angles: `eta` along the meridian, `omega` around z, in radians.

@@ -75,14 +75,8 @@ impl ClosestFinder {
 
     /// The closest point of the surface; `None` for a point that is not finite, or so far away that squares overflow.
     pub fn find(&self, p: &Point) -> Option<Closest> {
-        if !p.iter().all(|v| v.abs() < 1e150) {
-            return None;
-        }
-        let folded = p.coords.abs();
-        let gauge = match &self.body {
-            Body::Superellipsoid(s) => s.gauge(p),
-            Body::Supertoroid(s) => s.gauge(p),
-        };
+        let folded = fold(p)?;
+        let gauge = self.gauge(p);
         let mut best: Option<Minimum> = None;
         if self.convex && gauge > 1.0 {
             let (chart, _) = &self.sheets[0];
@@ -92,11 +86,38 @@ impl ClosestFinder {
                 search(chart, grid, &folded, &mut best);
             }
         }
-        let best = best?;
-        let point = Point::from(Vector::from_fn(|k, _| best.point[k].copysign(p[k])));
-        let distance = (point - p).norm();
-        Some(Closest { point, distance: if gauge < 1.0 { -distance } else { distance } })
+        Some(unfold(&best?, p, gauge))
     }
+
+    /// The point of the surface to which Newton's method leads from the foot along the ray through the point (of a
+    /// toroid, along its meridian line), for many times less than [`find`](Self::find). It is the closest one outside of
+    /// convex bodies, and inside for points less deep than the surface's smallest radius of curvature; for deeper ones
+    /// another may be closer.
+    pub fn find_from_foot(&self, p: &Point) -> Option<Closest> {
+        let folded = fold(p)?;
+        let descents =
+            self.sheets.iter().map(|(chart, _)| chart.descend(chart.place(&folded), &folded));
+        let best = descents.min_by(|a, b| a.squared.total_cmp(&b.squared))?;
+        Some(unfold(&best, p, self.gauge(p)))
+    }
+
+    fn gauge(&self, p: &Point) -> f64 {
+        match &self.body {
+            Body::Superellipsoid(s) => s.gauge(p),
+            Body::Supertoroid(s) => s.gauge(p),
+        }
+    }
+}
+
+/// The point's image in the first octant; `None` when its square is not finite.
+fn fold(p: &Point) -> Option<Vector> {
+    p.iter().all(|v| v.abs() < 1e150).then(|| p.coords.abs())
+}
+
+fn unfold(best: &Minimum, p: &Point, gauge: f64) -> Closest {
+    let point = Point::from(Vector::from_fn(|k, _| best.point[k].copysign(p[k])));
+    let distance = (point - p).norm();
+    Closest { point, distance: if gauge < 1.0 { -distance } else { distance } }
 }
 
 /// A start from which a coordinate that is 0 stays 0.

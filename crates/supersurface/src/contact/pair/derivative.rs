@@ -6,7 +6,7 @@
 //! shares `s` of the axes in the support function `h` (see `difference.rs`) `∂h/∂a_i = w_i h / a_i`,
 //! `∂h/∂ε1 = h (S ln S + S3 ln S3)/2` and `∂h/∂ε2 = h S (s1 ln s1 + s2 ln s2)/2`.
 
-use super::pair::{CELLS, CONTENT, Contact, WarmStart, answer};
+use super::query::{CELLS, CONTENT, Contact, WarmStart, answer};
 use super::{Convex, difference::Triple};
 use crate::Vector;
 use crate::shape::Posed;

@@ -8,11 +8,12 @@
 //! enough to the best minimum is done with; others are split in four. As A and B are symmetric, `φ(n) < φ(-n)` where
 //! `n·c > 0`: half of the sphere is enough.
 
+// loops over indices are what becomes vector instructions
+#![allow(clippy::needless_range_loop)]
+
 use super::continuation::settle;
 use super::descent::Minimum;
-use super::difference::{
-    Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit,
-};
+use super::difference::{Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit};
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Cells of the first level along an edge of the cube.
@@ -35,10 +36,8 @@ struct Cell {
 impl Cell {
     fn quarters(&self) -> [Self; 4] {
         let half = 0.5 * self.half;
-        [(-half, -half), (-half, half), (half, -half), (half, half)].map(|(dx, dy)| Self {
-            middle: [self.middle[0] + dx, self.middle[1] + dy],
-            half,
-        })
+        [(-half, -half), (-half, half), (half, -half), (half, half)]
+            .map(|(dx, dy)| Self { middle: [self.middle[0] + dx, self.middle[1] + dy], half })
     }
 }
 

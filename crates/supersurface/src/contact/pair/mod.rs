@@ -1,0 +1,17 @@
+//! Two convex bodies: from the one function of a pair (`difference`) by Newton's method in coordinates that flat faces
+//! need (`chart`, `descent`), over rounder bodies where it stalls (`continuation`), to the least of all minima
+//! (`cells`), the points that it belongs to (`witness`) and its derivatives (`derivative`).
+
+mod cells;
+mod chart;
+mod continuation;
+mod convex;
+mod derivative;
+mod descent;
+mod difference;
+mod query;
+mod witness;
+
+pub use convex::Convex;
+pub use derivative::{BodyDerivative, differentiate};
+pub use query::{Contact, WarmStart, certify, intersect, pair};
