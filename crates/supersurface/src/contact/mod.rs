@@ -4,12 +4,16 @@
 //! |---|---|---|
 //! | two convex bodies | [`pair`], [`intersect`], [`certify`] | signed distance, normal, witness points, and bounds of the distance |
 //! | the same in an optimisation | [`differentiate`] | derivatives by both poses and shapes |
+//! | many convex bodies | [`contacts`] | all pairs within a distance |
+//! | a half space, a ball, a point | [`half_space`], [`sphere`] | the same for toroids |
 //! | how deep a point lies in a solid | [`Indented`], [`ByClosestPoint`] | equation (46) without iteration; the exact closest point |
 //! | a mesh against a supersurface | [`Foundation`] | forces of an elastic layer, wrench on both bodies, derivatives by both poses |
 //! | what a force should be | [`laws`] | three laws in closed form, each with its name |
 
 pub mod elastic;
+mod many;
 mod pair;
+mod simple;
 
 pub use elastic::laws;
 pub use elastic::{
@@ -17,6 +21,8 @@ pub use elastic::{
     FoundationOptions, Indentation, IndentationSlope, IndentationSlopes, Indentations, Indented,
     SmoothlyIndented, Twist, VertexForce, Wrench, WrenchDerivative, layer_stiffness,
 };
+pub use many::{Neighbours, contacts};
 pub use pair::{
     BodyDerivative, Contact, Convex, WarmStart, certify, differentiate, intersect, pair,
 };
+pub use simple::{half_space, sphere};

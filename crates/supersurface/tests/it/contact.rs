@@ -3,12 +3,16 @@
 #![allow(clippy::print_stdout)]
 
 use std::env;
+use std::f64::consts::PI;
 
-use supersurface::contact::{Contact, Convex, WarmStart, certify, differentiate, intersect, pair};
+use supersurface::contact::{
+    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair, sphere,
+};
+use supersurface::measure::ClosestFinder;
 use supersurface::nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
-use supersurface::shape::{Implicit, Posed, Superellipsoid, SupportMap};
-use supersurface::{Direction, Pose, Vector};
+use supersurface::shape::{Implicit, Parametric, Posed, Superellipsoid, Supertoroid, SupportMap};
+use supersurface::{Direction, Point, Pose, Vector};
 
 fn direction(random: &mut Stream) -> Direction {
     Direction::new_normalize(Vector::from_fn(|_, _| random.normal()))
@@ -333,4 +337,58 @@ fn sizes_and_places_may_be_extreme() {
             }
         }
     }
+}
+
+#[test]
+fn a_ball_is_as_far_from_a_ring_as_its_centre_less_the_radius() {
+    let mut random = Stream::new(76, 0);
+    for _ in 0..300 {
+        let exponents = [random.between(0.1, 1.9), random.between(0.1, 1.9)];
+        let ring = random.between(1.2, 5.0);
+        let axes = [0; 3].map(|_| random.between(0.5, 2.0));
+        let shape = Supertoroid::new(axes, ring, exponents).unwrap();
+        let finder = ClosestFinder::supertoroid(&shape);
+        let place = Pose::translation(0.3, -0.2, 0.7);
+        let body = Posed::new(shape, place).unwrap();
+        let centre = place * Point::from(Vector::from_fn(|_, _| random.between(-6.0, 6.0)));
+        let radius = random.between(0.0, 2.0);
+        let found = sphere(&body, &finder, &centre, radius).unwrap();
+        let point = sphere(&body, &finder, &centre, 0.0).unwrap();
+        assert!((found.distance - (point.distance - radius)).abs() < 1e-12, "{found:?}");
+        // the point is on the surface, and no sampled one is nearer
+        let [on_ring, on_ball] = found.witnesses;
+        assert!((shape.gauge(&body.to_local(&on_ring)) - 1.0).abs() < 1e-7, "{shape:?} {found:?}");
+        assert!(((on_ball - centre).norm() - radius).abs() < 1e-12, "{found:?}");
+        for _ in 0..500 {
+            let (eta, omega) = (random.between(-PI, PI), random.between(-PI, PI));
+            let sample = (body.point(eta, omega) - centre).norm();
+            assert!(sample >= point.distance.abs() - 1e-9, "{shape:?} {centre} {sample} {point:?}");
+        }
+    }
+}
+
+#[test]
+fn contacts_of_many_bodies_are_those_of_all_pairs() {
+    let mut random = Stream::new(77, 0);
+    let bodies: Vec<Posed<Convex>> = (0..60)
+        .map(|_| {
+            let shift = Vector::from_fn(|_, _| random.between(-4.0, 4.0));
+            moved(&body(&mut random), shift)
+        })
+        .collect();
+    for within in [0.0, 0.3] {
+        let mut expected = Vec::new();
+        for i in 0..bodies.len() {
+            for j in i + 1..bodies.len() {
+                let found = pair(&bodies[i], &bodies[j], &mut WarmStart::default());
+                if found.distance <= within {
+                    expected.push(([i, j], found));
+                }
+            }
+        }
+        let found: Vec<_> =
+            contacts(&bodies, within).iter().map(|n| (n.bodies, n.contact)).collect();
+        assert!(found.len() > 10 && found == expected, "{} {}", found.len(), expected.len());
+    }
+    assert!(contacts(&[], 1.0).is_empty());
 }

@@ -1,6 +1,7 @@
 //! A convex superellipsoid with the constants that every query of it needs.
 
-use crate::shape::{InvalidShape, Superellipsoid};
+use crate::shape::{InvalidShape, Superellipsoid, SupportMap};
+use crate::{Point, Vector};
 
 /// Exponents below this are queried as this, and those above 2 less this as that: the support function differs by
 /// 4e-11 of itself.
@@ -50,5 +51,11 @@ impl Convex {
     /// The shape itself.
     pub const fn shape(&self) -> &Superellipsoid {
         &self.shape
+    }
+}
+
+impl SupportMap for Convex {
+    fn support_point(&self, n: &Vector) -> Point {
+        self.shape.support_point(n)
     }
 }
