@@ -6,8 +6,6 @@
 mod contender;
 mod measure;
 mod options;
-// once supersurface::contact is there: `mod ours;` alone, and stand_in.rs goes
-#[cfg_attr(not(feature = "contact"), path = "stand_in.rs")]
 mod ours;
 mod pair_file;
 mod pairs;

@@ -8,9 +8,6 @@ use supersurface::shape::{Posed, Superellipsoid};
 use crate::contender::Contender;
 use crate::pairs::Pair;
 
-/// False: these are supersurface's own answers.
-pub const STAND_IN: bool = false;
-
 /// A pair in supersurface's types.
 pub struct Ours {
     a: Posed<Convex>,

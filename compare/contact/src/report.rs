@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use crate::measure::{Figures, RegimeResult};
 use crate::options::Options;
-use crate::ours::STAND_IN;
 
 /// The table, with what it needs to be understood.
 pub fn table(options: &Options, results: &[RegimeResult]) -> String {
@@ -82,9 +81,6 @@ fn notes(options: &Options, results: &[RegimeResult]) -> String {
     if options.pairs < 1000 {
         text += "Streaming needs 1000 pairs or more to mean anything.\n";
     }
-    if STAND_IN {
-        text += "NOT OURS: the stand-in is parry, as supersurface has no contact queries yet.\n";
-    }
     text
 }
 
@@ -103,7 +99,6 @@ pub fn json(options: &Options, results: &[RegimeResult]) -> Value {
         "seed": options.seed,
         "pairs_per_regime": options.pairs,
         "shapes": options.shapes.name(),
-        "stand_in": STAND_IN,
         "trusted": results.iter().map(|r| json!({
             "regime": r.regime.name(),
             "known": r.known,

@@ -58,7 +58,7 @@ fn near(bodies: &[Posed<Convex>], within: f64) -> Vec<[usize; 2]> {
     for (k, [low, high]) in boxes.iter().enumerate() {
         let reach = within.max(0.0);
         let around = AABB::from_corners(low.map(|v| v - reach), high.map(|v| v + reach));
-        let others = tree.locate_in_envelope_intersecting(&around).map(|entry| entry.data);
+        let others = tree.locate_in_envelope_intersecting(around).map(|entry| entry.data);
         found.extend(others.filter(|other| *other > k).map(|other| [k, other]));
     }
     found.sort_unstable();

@@ -5,6 +5,7 @@
 //! | two convex bodies | [`pair`], [`intersect`], [`certify`] | signed distance, normal, witness points, and bounds of the distance |
 //! | the same in an optimisation | [`differentiate`] | derivatives by both poses and shapes |
 //! | many convex bodies | [`contacts`] | all pairs within a distance |
+//! | a ring and a convex body | [`ring`] | the distance, also through the hole |
 //! | a half space, a ball, a point | [`half_space`], [`sphere`] | the same for toroids |
 //! | how deep a point lies in a solid | [`Indented`], [`ByClosestPoint`] | equation (46) without iteration; the exact closest point |
 //! | a mesh against a supersurface | [`Foundation`] | forces of an elastic layer, wrench on both bodies, derivatives by both poses |
@@ -13,6 +14,7 @@
 pub mod elastic;
 mod many;
 mod pair;
+mod ring;
 mod simple;
 
 pub use elastic::laws;
@@ -25,4 +27,5 @@ pub use many::{Neighbours, contacts};
 pub use pair::{
     BodyDerivative, Contact, Convex, WarmStart, certify, differentiate, intersect, pair,
 };
+pub use ring::ring;
 pub use simple::{half_space, sphere};

@@ -6,9 +6,10 @@ use std::env;
 use std::f64::consts::PI;
 
 use supersurface::contact::{
-    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair, sphere,
+    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair, ring, sphere,
 };
 use supersurface::measure::ClosestFinder;
+use supersurface::mesh::{Spacing, supertoroid_grid};
 use supersurface::nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{Implicit, Parametric, Posed, Superellipsoid, Supertoroid, SupportMap};
@@ -134,6 +135,10 @@ fn check_consistent(bodies: &[Posed<Convex>; 2], found: &Contact, size: f64) {
     let case = || format!("{bodies:?} {found:?}");
     assert!(found.distance.is_finite() && (n.norm() - 1.0).abs() < 1e-12, "{}", case());
     assert!(found.bounds[0] <= found.distance && found.distance <= found.bounds[1], "{}", case());
+    // a search that stalled says so by its bounds
+    if found.distance > 0.0 && found.bounds[1] - found.bounds[0] > 1e-9 * size {
+        return;
+    }
     let [p, q] = found.witnesses;
     assert!((q - p - n * found.distance).norm() < 1e-8 * size, "{}", case());
     for (body, point) in bodies.iter().zip([p, q]) {
@@ -391,4 +396,51 @@ fn contacts_of_many_bodies_are_those_of_all_pairs() {
         assert!(found.len() > 10 && found == expected, "{} {}", found.len(), expected.len());
     }
     assert!(contacts(&[], 1.0).is_empty());
+}
+
+/// `SUPERSURFACE_RING_PAIRS=1000 cargo test --release -p supersurface --test it rings_are`
+#[test]
+fn rings_are_as_far_from_bodies_as_dense_samples_say() {
+    let count = env::var("SUPERSURFACE_RING_PAIRS").map_or(60, |n| n.parse().unwrap());
+    let mut random = Stream::new(78, 0);
+    let (mut apart, mut overlapping) = (0, 0);
+    for _ in 0..count {
+        let exponents = [random.between(0.1, 1.9), random.between(0.1, 1.9)];
+        let axes = [0; 3].map(|_| random.between(0.3, 1.0));
+        let shape = Supertoroid::new(axes, random.between(1.2, 4.0), exponents).unwrap();
+        let torus = Posed::new(shape, *body(&mut random).pose()).unwrap();
+        let shift = Vector::from_fn(|_, _| random.between(-2.5, 2.5));
+        let other = moved(&body(&mut random), shift);
+        let found = ring(&torus, &other).unwrap();
+        let finder = ClosestFinder::superellipsoid(other.shape().shape());
+        let near = |sample: &Point| finder.find(&other.to_local(sample)).unwrap().distance;
+        let spacing = 0.05;
+        let points = supertoroid_grid(&shape, Spacing::EqualArc, spacing).unwrap();
+        let sampled =
+            points.iter().map(|p| near(&(torus.pose() * p))).fold(f64::INFINITY, f64::min);
+        match found {
+            Some(contact) => {
+                apart += 1;
+                let d = contact.distance;
+                assert!(d <= sampled + 1e-9, "{d} {sampled} {torus:?} {other:?}");
+                assert!(contact.bounds[0] <= d && d <= contact.bounds[1], "{contact:?}");
+                let [p, q] = contact.witnesses;
+                assert!(((q - p).norm() - d).abs() < 1e-7, "{contact:?}");
+                let on_ring = shape.gauge(&torus.to_local(&p));
+                let on_body = other.shape().shape().gauge(&other.to_local(&q));
+                assert!((on_ring - 1.0).abs() < 1e-6, "{on_ring} {torus:?} {other:?}");
+                assert!((on_body - 1.0).abs() < 1e-6, "{on_body} {torus:?} {other:?}");
+            }
+            None => {
+                overlapping += 1;
+                // a body within the tube holds no point of its surface
+                let inside = torus.gauge(&(other.pose() * Point::origin())) < 1.0;
+                // outside of the circle on which the points are that far apart they are farther
+                let widest =
+                    4.0 * spacing * (shape.ring_ratio() + 1.0) / (shape.ring_ratio() - 1.0);
+                assert!(sampled < widest.max(0.2) || inside, "{sampled} {torus:?} {other:?}");
+            }
+        }
+    }
+    assert!(apart > count / 5 && overlapping > count / 5, "{apart} {overlapping}");
 }

@@ -24,7 +24,7 @@ const SMALLEST: f64 = 0.04;
 const ALIKE: f64 = 1e-9;
 const DISTINCT: f64 = 1e-4;
 /// Minima that are told apart.
-const MINIMA: usize = 24;
+const MINIMA: usize = 64;
 
 /// A square on the face `[-1, 1]²`.
 #[derive(Clone, Copy, Debug)]
@@ -275,7 +275,7 @@ fn falls_to(from: &Triple, steep: &Triple, minimum: &Triple) -> bool {
     let to = difference(minimum, from);
     let distance = dot(&to, &to).sqrt();
     distance < 1e-3
-        || distance < 0.5 && -dot(steep, &to) > 0.5 * distance * dot(steep, steep).sqrt()
+        || distance < 0.5 && -dot(steep, &to) > 0.65 * distance * dot(steep, steep).sqrt()
 }
 
 /// False where every direction of the cell looks away from B.

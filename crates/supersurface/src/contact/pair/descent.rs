@@ -36,15 +36,12 @@ impl Minimum {
         let chart = Chart::at(pair, &self.normal);
         let at = pair.expand::<false>(&self.normal, &chart.tangents);
         let [t, s] = &chart.tangents[0];
-        let (xx, xy, yy) = (dot(t, t), dot(t, s), dot(s, s));
-        let a = at.hessian[0] - at.value * xx;
-        let b = at.hessian[1] - at.value * xy;
-        let c = at.hessian[2] - at.value * yy;
+        let [a, b, c] = curvature(&at.hessian, at.value, &chart);
         // of the form scaled to ones on its diagonal, as rows may differ by hundreds of magnitudes
         let scale = [a, c].map(|v| 1.0 / v.abs().sqrt());
         let mixed = b * scale[0] * scale[1];
         let floor = FLAT * (at.value.abs() + 1.0);
-        a > floor * xx && c > floor * yy && 1.0 - mixed * mixed > FLAT
+        a > floor * dot(t, t) && c > floor * dot(s, s) && 1.0 - mixed * mixed > FLAT
     }
 
     /// Length of the gradient along the sphere, in the pair's size: how far the support points are from facing each
@@ -64,7 +61,6 @@ struct Plan {
     predicted: f64,
     /// The most that the step can gain.
     estimate: f64,
-    majorised: Option<[f64; 2]>,
 }
 
 /// The descent from `start`, a direction in both frames.
@@ -93,8 +89,7 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         Minimum { normal: *start, expansion: Expansion::NONE, settled: false, evaluations: 0 };
     let mut chart = Chart::at(pair, start);
     let mut trial = *start;
-    let mut plan =
-        Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY, majorised: None };
+    let mut plan = Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY };
     let (mut factor, mut refusals, mut majorised, mut last) = (1.0, 0, false, false);
     let mut radius = LONGEST;
     let mut moved = 0.0;
@@ -139,13 +134,13 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         if here.evaluations >= MOST || refusals > REFUSALS {
             return here;
         }
-        majorised = refusals > 0 && refusals % 2 == 0 && plan.majorised.is_some();
-        let by = match plan.majorised {
-            Some(step) if majorised => {
-                let shorter = 0.1f64.powi(refusals / 2 - 1);
-                [step[0] * shorter, step[1] * shorter]
-            }
-            _ => chart.bent::<FUSED>(&[plan.newton[0] * factor, plan.newton[1] * factor]),
+        majorised = refusals > 0 && refusals % 2 == 0;
+        let by = if majorised {
+            let step = majorised_step(&here.expansion, &chart);
+            let shorter = 0.1f64.powi(refusals / 2 - 1);
+            [step[0] * shorter, step[1] * shorter]
+        } else {
+            chart.bent::<FUSED>(&[plan.newton[0] * factor, plan.newton[1] * factor])
         };
         moved = chart.length(&by);
         trial = chart.moved(&here.normal, &by);
@@ -154,21 +149,33 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
 
 #[inline(always)]
 fn plan<const FUSED: bool>(at: &Expansion, chart: &Chart) -> Plan {
-    let [t, s] = &chart.tangents[0];
-    let gradient = [dot(&at.gap, t), dot(&at.gap, s)];
-    let metric = [dot(t, t), dot(t, s), dot(s, s)];
-    let less = |form: &[f64; 3], value: f64| -> [f64; 3] {
-        [form[0] - value * metric[0], form[1] - value * metric[1], form[2] - value * metric[2]]
-    };
-    let newton = solve(&less(&at.hessian, at.value), &gradient, &chart.lengths);
+    let gradient = gradient(at, chart);
+    let form = curvature(&at.hessian, at.value, chart);
+    let newton = solve(&form, &gradient, &chart.lengths);
     let predicted = -0.5 * (gradient[0] * newton[0] + gradient[1] * newton[1]);
     let bent = chart.bent::<FUSED>(&newton);
     let moved = (gradient[0] * bent[0]).abs().max((gradient[1] * bent[1]).abs());
-    let majorant = less(&at.majorant, at.value.min(0.0));
-    let majorised = solve(&majorant, &gradient, &chart.lengths);
-    let finite = majorised[0].is_finite() && majorised[1].is_finite();
-    let majorised = if finite { Some(majorised) } else { None };
-    Plan { newton, predicted, estimate: predicted.max(moved), majorised }
+    Plan { newton, predicted, estimate: predicted.max(moved) }
+}
+
+/// The step to the minimum of the quadratic that lies above.
+#[inline(always)]
+fn majorised_step(at: &Expansion, chart: &Chart) -> [f64; 2] {
+    let form = curvature(&at.majorant, at.value.min(0.0), chart);
+    solve(&form, &gradient(at, chart), &chart.lengths)
+}
+
+#[inline(always)]
+fn gradient(at: &Expansion, chart: &Chart) -> [f64; 2] {
+    let [t, s] = &chart.tangents[0];
+    [dot(&at.gap, t), dot(&at.gap, s)]
+}
+
+/// A second derivative along the tangents less a value times the metric.
+#[inline(always)]
+fn curvature(form: &[f64; 3], value: f64, chart: &Chart) -> [f64; 3] {
+    let [t, s] = &chart.tangents[0];
+    [form[0] - value * dot(t, t), form[1] - value * dot(t, s), form[2] - value * dot(s, s)]
 }
 
 /// `-M⁻¹ g` for a symmetric `M` made positive definite, whose rows may differ by hundreds of magnitudes.
