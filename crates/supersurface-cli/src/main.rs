@@ -1,6 +1,7 @@
 //! The `supersurface` command: a depth camera's cloud in, shapes and grasps out.
 
 mod args;
+mod contact;
 mod demo;
 mod exit;
 mod fit;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Command::Segment(args) => segment::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Fit(args) => fit::run(args),
+        Command::Contact(args) => contact::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Info(args) => shape::info(args),
         Command::Mesh(args) => shape::mesh(args),

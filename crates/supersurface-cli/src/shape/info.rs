@@ -228,7 +228,7 @@ fn row(v: &Vector) -> String {
 }
 
 /// Five significant digits.
-fn short(v: f64) -> String {
+pub(crate) fn short(v: f64) -> String {
     match v.abs() {
         0.0 => "0".into(),
         1e-3..1e5 => {
