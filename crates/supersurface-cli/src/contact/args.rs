@@ -24,7 +24,7 @@ pub(crate) struct ContactArgs {
     /// Where to, with --cases: one JSON line a pair in the order of the list; - writes to standard output.
     #[arg(long, short, value_name = "FILE", requires = "cases")]
     pub(super) output: Option<PathBuf>,
-    /// Prove the distance to so many metres, where rounding allows it. Milliseconds a pair rather than microseconds.
+    /// Prove the distance to so many metres, where rounding and some seconds of search allow it.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     certify: Option<f64>,
     /// Time each pair of --cases, as the best of 5 batches of so many queries; 0 times nothing.

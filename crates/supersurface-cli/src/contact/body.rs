@@ -13,12 +13,12 @@ pub(super) fn body(name: &str, model: &Model) -> Result<Posed<Convex>, Failure> 
         let needed = "contact needs a superellipsoid with exponents of at most 2, not deformed";
         Failure::input(format!("{name}: {what}: {needed}; {mend}"))
     };
-    const HULL: &str = "fit one around it, or several to its parts";
+    const AROUND: &str = "use one that encloses it, or several for its parts";
     const PARTS: &str = "ask for its parts one by one";
     let solid = match model {
         Model::Solid(solid) => solid,
-        Model::Implicit(kind, _) => return Err(wrong(&kind.replace('_', " "), HULL)),
-        Model::Extended(_) => return Err(wrong("extended superellipsoid", HULL)),
+        Model::Implicit(kind, _) => return Err(wrong(&kind.replace('_', " "), AROUND)),
+        Model::Extended(_) => return Err(wrong("extended superellipsoid", AROUND)),
         Model::Quadric(_) => {
             let mend = "write an ellipsoid as a superellipsoid with exponents [1, 1] and its pose";
             return Err(wrong("quadric", mend));
@@ -31,11 +31,13 @@ pub(super) fn body(name: &str, model: &Model) -> Result<Posed<Convex>, Failure> 
             Solid::Separable(_) | Solid::Supercylinder(_) => {
                 "write it as a superellipsoid where it is one"
             }
-            _ => HULL,
+            _ => AROUND,
         };
         return Err(wrong(&solid.shape().name(), mend));
     };
-    let convex = Convex::new(*shape)
-        .map_err(|e| wrong(&format!("superellipsoid whose {} is {}", e.what, e.value), HULL))?;
+    let convex = Convex::new(*shape).map_err(|e| {
+        let what = format!("superellipsoid whose {} is {}", e.what, e.value);
+        wrong(&what, "write 2 instead for its convex hull")
+    })?;
     Posed::new(convex, *solid.pose()).map_err(|e| Failure::input(format!("{name}: {e}")))
 }

@@ -16,14 +16,16 @@ pub(super) struct Query {
 }
 
 impl Query {
-    /// The contact; it fails where lengths overflow.
+    /// The contact; it fails where lengths overflow or vanish beside others.
     pub(super) fn ask(&self, [a, b]: &[Posed<Convex>; 2]) -> Result<Contact, String> {
         let contact = self.cold(a, b);
         let points = contact.witnesses.iter().flat_map(|p| p.coords.iter());
         let numbers = points.chain(contact.normal.iter()).chain(&contact.bounds);
         match contact.distance.is_finite() && numbers.copied().all(f64::is_finite) {
             true => Ok(contact),
-            false => Err("lengths overflow: are all of them metres?".to_owned()),
+            false => {
+                Err("lengths overflow, or differ by too much: are all of them metres?".to_owned())
+            }
         }
     }
 

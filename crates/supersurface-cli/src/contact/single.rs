@@ -19,7 +19,8 @@ pub(super) fn run(args: &ContactArgs, given: [&str; 2], query: &Query) -> Result
         return Err(Failure::usage("only one of the bodies can come from standard input"));
     }
     if let Some(png) = &args.png {
-        Places::read(given.into_iter().filter(|g| !is_json(g)).map(Path::new)).take("--png", png)?;
+        Places::read(given.into_iter().filter(|g| !is_json(g)).map(Path::new))
+            .take("--png", png)?;
     }
     let names = given.map(named);
     let [a, b] = [0, 1].map(|k| body(&names[k], &read(given[k])?));

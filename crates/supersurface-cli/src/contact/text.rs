@@ -22,7 +22,8 @@ pub(super) struct Lengths {
 impl Lengths {
     /// As suits two bodies, whose size is the mean of their largest semi-axes.
     pub(super) fn of(bodies: &[Posed<Convex>; 2]) -> Self {
-        let largest = |b: &Posed<Convex>| b.shape().shape().semi_axes().into_iter().fold(0.0, f64::max);
+        let largest =
+            |b: &Posed<Convex>| b.shape().shape().semi_axes().into_iter().fold(0.0, f64::max);
         let size = 0.5 * largest(&bodies[0]) + 0.5 * largest(&bodies[1]);
         let (unit, units) = if size < 1.0 { ("mm", 1e3) } else { ("m", 1.0) };
         Self { size, unit, units }

@@ -232,7 +232,8 @@ pub(crate) fn short(v: f64) -> String {
     match v.abs() {
         0.0 => "0".into(),
         1e-3..1e5 => {
-            let digits = 4 - v.abs().log10().floor() as i32;
+            // 9.99996 is shown as 10.000
+            let digits = 4 - (v.abs() * (1.0 + 5e-6)).log10().floor() as i32;
             format!("{v:.*}", digits.max(0) as usize)
         }
         _ => format!("{v:.4e}"),
