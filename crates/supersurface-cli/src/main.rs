@@ -8,6 +8,7 @@ mod fit;
 mod gallery;
 mod grasp;
 mod input;
+mod numbers;
 mod outputs;
 mod places;
 mod progress;

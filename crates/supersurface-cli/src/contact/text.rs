@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
+use supersurface::Point;
 use supersurface::contact::{Contact, Convex};
 use supersurface::shape::Posed;
-use supersurface::{Point, Vector};
 
-use crate::shape::short;
+use crate::numbers::{fixed, short};
 
 /// Distances below this share of the bodies' size are none.
 const TOUCHING: f64 = 1e-9;
@@ -39,10 +39,11 @@ impl Lengths {
         }
     }
 
-    /// A place; what is nothing beside the bodies is 0.
+    /// A place, to the fifth digit of the bodies' size.
     fn place(&self, p: &Point) -> String {
-        let shown = p.iter().map(|v| match v.abs() <= TOUCHING * self.size {
-            true => "0".into(),
+        let size = self.units * self.size;
+        let shown = p.iter().map(|v| match (1e-6..1e9).contains(&size) {
+            true => fixed(self.units * v, (4.0 - size.log10().floor()).max(0.0) as usize),
             false => short(self.units * v),
         });
         format!("({}) {}", shown.collect::<Vec<_>>().join(", "), self.unit)
@@ -60,16 +61,10 @@ pub(super) fn text([a, b]: [&str; 2], bodies: &[Posed<Convex>; 2], contact: &Con
     let ([low, high], unit) = (contact.bounds.map(|v| lengths.units * v), lengths.unit);
     let width = format!("{:.1e} {unit} wide", high - low);
     line("bounds", format!("{} to {} {unit} ({width})", short(low), short(high)));
-    line("normal", direction(&contact.normal));
+    let normal: Vec<String> = contact.normal.iter().map(|v| fixed(*v, 5)).collect();
+    line("normal", format!("({}), from A to B", normal.join(", ")));
     let [on_a, on_b] = &contact.witnesses;
     line("point of A", format!("{}, {a}", lengths.place(on_a)));
     line("point of B", format!("{}, {b}", lengths.place(on_b)));
     out
-}
-
-/// Five decimals each, zero without a sign.
-fn direction(n: &Vector) -> String {
-    let shown: Vec<String> =
-        n.iter().map(|v| format!("{:.5}", (v * 1e5).round() / 1e5 + 0.0)).collect();
-    format!("({}), from A to B", shown.join(", "))
 }

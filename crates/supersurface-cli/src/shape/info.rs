@@ -12,6 +12,7 @@ use supersurface_io::Model;
 
 use super::args::ShapeArgs;
 use crate::exit::{Failure, print};
+use crate::numbers::short;
 
 /// Cells along the longest side of what is marched.
 const CELLS: usize = 96;
@@ -225,17 +226,4 @@ fn about(error: f64) -> String {
 
 fn row(v: &Vector) -> String {
     format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
-}
-
-/// Five significant digits.
-pub(crate) fn short(v: f64) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        1e-3..1e5 => {
-            // 9.99996 is shown as 10.000
-            let digits = 4 - (v.abs() * (1.0 + 5e-6)).log10().floor() as i32;
-            format!("{v:.*}", digits.max(0) as usize)
-        }
-        _ => format!("{v:.4e}"),
-    }
 }

@@ -10,7 +10,9 @@
 
 use super::continuation::settle;
 use super::descent::Minimum;
-use super::difference::{Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit};
+use super::difference::{
+    Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit,
+};
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Cells of the first level along an edge of the cube.
@@ -30,8 +32,10 @@ struct Cell {
 impl Cell {
     fn quarters(&self) -> [Self; 4] {
         let half = 0.5 * self.half;
-        [(-half, -half), (-half, half), (half, -half), (half, half)]
-            .map(|(dx, dy)| Self { middle: [self.middle[0] + dx, self.middle[1] + dy], half })
+        [(-half, -half), (-half, half), (half, -half), (half, half)].map(|(dx, dy)| Self {
+            middle: [self.middle[0] + dx, self.middle[1] + dy],
+            half,
+        })
     }
 }
 

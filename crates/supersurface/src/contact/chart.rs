@@ -64,8 +64,10 @@ impl Chart {
             seams[0] = Some(seam);
             let beside = cross(n, &first.across);
             let square = dot(&beside, &beside);
-            tangents =
-                [scaled(&cross(&beside, n), 1.0 / square), scaled(&beside, 1.0 / square.sqrt())];
+            tangents = [
+                scaled(&cross(&beside, n), 1.0 / square),
+                scaled(&beside, 1.0 / square.sqrt()),
+            ];
             if let Some(seam) = second.seam {
                 let other = cross(n, &second.across);
                 let volume = dot(&other, &first.across);
@@ -129,8 +131,11 @@ impl Chart {
     #[inline(always)]
     pub(super) fn length(&self, by: &[f64; 2]) -> f64 {
         let [t, s] = &self.tangents[0];
-        let step: Triple =
-            [by[0] * t[0] + by[1] * s[0], by[0] * t[1] + by[1] * s[1], by[0] * t[2] + by[1] * s[2]];
+        let step: Triple = [
+            by[0] * t[0] + by[1] * s[0],
+            by[0] * t[1] + by[1] * s[1],
+            by[0] * t[2] + by[1] * s[2],
+        ];
         dot(&step, &step).sqrt()
     }
 
@@ -185,29 +190,25 @@ fn smallest(pair: &Difference, n: &[Triple; 2]) -> [Candidate; 2] {
             axis[k] = 1.0;
             axis
         };
-        let mut offer =
-            |rank: f64, across: Triple, axis: Option<usize>, value: f64, which: usize| {
-                let power = pair.dual[body][which] - 1.0;
-                if power >= TAME || rank >= best[1].rank {
-                    return;
+        let mut offer = |rank: f64, across: Triple, axis: Option<usize>, value: f64, which: usize| {
+            let power = pair.dual[body][which] - 1.0;
+            if power >= TAME || rank >= best[1].rank {
+                return;
+            }
+            let least = floor(power);
+            let value = if value.abs() < least { least.copysign(value) } else { value };
+            let candidate =
+                Candidate { rank, across, seam: Some(Seam { body, axis, value, power, rank, which }) };
+            let apart = |c: &Candidate| dot(&c.across, &across).powi(2) < 0.9;
+            if rank < best[0].rank {
+                if apart(&best[0]) {
+                    best[1] = best[0];
                 }
-                let least = floor(power);
-                let value = if value.abs() < least { least.copysign(value) } else { value };
-                let candidate = Candidate {
-                    rank,
-                    across,
-                    seam: Some(Seam { body, axis, value, power, rank, which }),
-                };
-                let apart = |c: &Candidate| dot(&c.across, &across).powi(2) < 0.9;
-                if rank < best[0].rank {
-                    if apart(&best[0]) {
-                        best[1] = best[0];
-                    }
-                    best[0] = candidate;
-                } else if apart(&best[0]) {
-                    best[1] = candidate;
-                }
-            };
+                best[0] = candidate;
+            } else if apart(&best[0]) {
+                best[1] = candidate;
+            }
+        };
         if !cap {
             offer(u[2] * whole, axis_of(2), Some(2), l[2], 0);
         }
@@ -241,5 +242,8 @@ fn plain(n: &Triple) -> [Triple; 2] {
     let sign = 1f64.copysign(n[2]);
     let a = -1.0 / (sign + n[2]);
     let b = n[0] * n[1] * a;
-    [[1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]], [b, sign + n[1] * n[1] * a, -n[1]]]
+    [
+        [1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]],
+        [b, sign + n[1] * n[1] * a, -n[1]],
+    ]
 }

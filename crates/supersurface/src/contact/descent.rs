@@ -70,12 +70,15 @@ impl Job for Descent<'_> {
 
 #[inline(always)]
 fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut here =
-        Minimum { normal: *start, expansion: Expansion::NONE, settled: false, evaluations: 0 };
+    let mut here = Minimum {
+        normal: *start,
+        expansion: Expansion::NONE,
+        settled: false,
+        evaluations: 0,
+    };
     let mut chart = Chart::at(pair, start);
     let mut trial = *start;
-    let mut plan =
-        Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY, majorised: None };
+    let mut plan = Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY, majorised: None };
     let (mut factor, mut refusals, mut majorised, mut last) = (1.0, 0, false, false);
     let mut radius = LONGEST;
     let mut moved = 0.0;

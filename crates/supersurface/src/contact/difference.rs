@@ -236,8 +236,7 @@ impl Difference {
     ) -> Values<T, N> {
         let zero = [T::of(0.0); N];
         let mut found = Values { value: zero, gradient: [zero; 3] };
-        let turn: [[T; 3]; 3] =
-            [narrow(&self.turn[0]), narrow(&self.turn[1]), narrow(&self.turn[2])];
+        let turn: [[T; 3]; 3] = [narrow(&self.turn[0]), narrow(&self.turn[1]), narrow(&self.turn[2])];
         let centre: [T; 3] = narrow(&self.centre);
         for b in 0..2 {
             let semi_axes: [T; 3] = narrow(&self.semi_axes[b]);

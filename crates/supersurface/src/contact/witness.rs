@@ -37,11 +37,7 @@ impl Witnesses {
         if facing <= FACING {
             return Self { of_a: own, of_b: far };
         }
-        let search = Search {
-            bodies: [a, b],
-            pair,
-            across: scaled(&found.normal[0], -found.expansion.value),
-        };
+        let search = Search { bodies: [a, b], pair, across: scaled(&found.normal[0], -found.expansion.value) };
         // where the two support points would meet, B moved into contact
         let ends = [own, difference(&far, &search.across)];
         let middle = scaled(&sum(&ends[0], &ends[1]), 0.5);
