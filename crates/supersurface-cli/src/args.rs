@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use supersurface::fit::Family;
 
+use crate::contact::ContactArgs;
 use crate::fit::FitArgs;
 use crate::gallery::GalleryArgs;
 use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// The surface of each cloud of one object.
     Fit(Box<FitArgs>),
+    /// How far apart two convex bodies are, or how deep in each other.
+    Contact(ContactArgs),
     /// Draws the figures that explain the family.
     Gallery(GalleryArgs),
     /// What a shape is: size, volume, mass.

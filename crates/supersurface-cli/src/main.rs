@@ -1,12 +1,14 @@
 //! The `supersurface` command: a depth camera's cloud in, shapes and grasps out.
 
 mod args;
+mod contact;
 mod demo;
 mod exit;
 mod fit;
 mod gallery;
 mod grasp;
 mod input;
+mod numbers;
 mod outputs;
 mod places;
 mod progress;
@@ -28,6 +30,7 @@ fn main() -> ExitCode {
         Command::Segment(args) => segment::run(args),
         Command::Demo(args) => demo::run(args),
         Command::Fit(args) => fit::run(args),
+        Command::Contact(args) => contact::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Info(args) => shape::info(args),
         Command::Mesh(args) => shape::mesh(args),

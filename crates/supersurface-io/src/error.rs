@@ -94,7 +94,7 @@ const MOST: usize = 400;
 
 /// A message that may quote what a file says: in one line, nothing in it steers a terminal, and the middle of what
 /// is long is left out (the mend stands at the end).
-fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     let count = text.chars().count();
     let left_out = if count > MOST { MOST / 2..count - MOST / 2 } else { count..count };
     let mut out = String::new();

@@ -10,6 +10,8 @@
 //! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
 //! | fit (JSON) | out, in as a shape | [`fit_json`], [`fit_json_line`], [`read_shape`] |
+//! | pairs of bodies (JSON) | in | [`read_contact_cases`] |
+//! | contact (JSON) | out | [`contact_json`], [`contact_line`] |
 //! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
@@ -27,6 +29,7 @@
 mod bytes;
 mod camera_json;
 mod cloud_files;
+mod contact_json;
 mod depth_png;
 mod error;
 mod fit_json;
@@ -45,6 +48,9 @@ mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
 pub use cloud_files::{check_points_file, write_points};
+pub use contact_json::{
+    ContactCase, contact_json, contact_line, parse_contact_cases, read_contact_cases,
+};
 pub use depth_png::read_mask;
 pub use error::{ReadError, WriteError};
 pub use fit_json::{FitHead, ViewHead, fit_json, fit_json_line};

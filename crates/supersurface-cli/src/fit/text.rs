@@ -4,15 +4,12 @@ use std::fmt::Write;
 
 use supersurface::fit::Fit;
 
+use crate::numbers::fixed;
+
 /// The text of a fit; lengths are millimetres, with powers of ten for what is no object of a table.
 pub(super) fn text(name: &str, points: usize, fit: &Fit) -> String {
     let shape = fit.surface.shape();
     let size = shape.semi_axes().into_iter().fold(0.0, f64::max) * 1e3;
-    let fixed = |v: f64, decimals: usize| {
-        let shown = format!("{v:.decimals$}");
-        let is_zero = shown.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
-        shown.strip_prefix('-').filter(|_| is_zero).map_or(shown.clone(), str::to_owned)
-    };
     let mm = |v: f64| match (1.0..1e6).contains(&size) {
         true => fixed(1e3 * v, 2),
         false => format!("{:.3e}", 1e3 * v),

@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use clap::Args;
-use supersurface_io::{Model, parse_shape, read_shape};
+use supersurface_io::{Model, parse_shape, read_shape, shown_name};
 
 use crate::exit::Failure;
+
+/// The name for messages of a shape that no file has.
+const COMMAND_LINE: &str = "the shape on the command line";
 
 /// Which shape.
 #[derive(Debug, Args)]
@@ -64,11 +67,7 @@ pub(crate) struct ShapeArgs {
 impl ShapeArgs {
     /// The name for messages.
     pub(crate) fn name(&self) -> String {
-        match &self.shape {
-            Some(file) if file == "-" => "standard input".into(),
-            Some(file) if !is_json(file) => file.clone(),
-            _ => "the shape on the command line".into(),
-        }
+        self.shape.as_deref().map_or_else(|| COMMAND_LINE.into(), named)
     }
 
     /// Fails when a file to be written is the one that is read.
@@ -82,12 +81,10 @@ impl ShapeArgs {
 
     /// The shape.
     pub(crate) fn model(&self) -> Result<Model, Failure> {
-        let read = match &self.shape {
-            Some(file) if !is_json(file) => read_shape(file.as_ref()),
-            Some(text) => parse_shape(&self.name(), text.as_bytes()),
-            None => parse_shape(&self.name(), self.json()?.as_bytes()),
-        };
-        read.map_err(Failure::input)
+        match &self.shape {
+            Some(shape) => read(shape),
+            None => parse_shape(COMMAND_LINE, self.json()?.as_bytes()).map_err(Failure::input),
+        }
     }
 
     /// The flags as a shape file, deformations in the order cavity, taper, twist, bend.
@@ -129,7 +126,25 @@ impl ShapeArgs {
     }
 }
 
-fn is_json(text: &str) -> bool {
+/// The name for messages of a shape that is said by a file, by - or by JSON itself.
+pub(crate) fn named(shape: &str) -> String {
+    match shape {
+        _ if is_json(shape) => COMMAND_LINE.into(),
+        file => shown_name(file.as_ref()),
+    }
+}
+
+/// Such a shape.
+pub(crate) fn read(shape: &str) -> Result<Model, Failure> {
+    let read = match is_json(shape) {
+        true => parse_shape(COMMAND_LINE, shape.as_bytes()),
+        false => read_shape(shape.as_ref()),
+    };
+    read.map_err(Failure::input)
+}
+
+/// True for JSON itself, not the name of a file.
+pub(crate) fn is_json(text: &str) -> bool {
     text.trim_start().starts_with('{')
 }
 

@@ -12,6 +12,7 @@ use supersurface_io::Model;
 
 use super::args::ShapeArgs;
 use crate::exit::{Failure, print};
+use crate::numbers::short;
 
 /// Cells along the longest side of what is marched.
 const CELLS: usize = 96;
@@ -225,16 +226,4 @@ fn about(error: f64) -> String {
 
 fn row(v: &Vector) -> String {
     format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
-}
-
-/// Five significant digits.
-fn short(v: f64) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        1e-3..1e5 => {
-            let digits = 4 - v.abs().log10().floor() as i32;
-            format!("{v:.*}", digits.max(0) as usize)
-        }
-        _ => format!("{v:.4e}"),
-    }
 }

@@ -6,6 +6,7 @@ mod mesh;
 mod meshed;
 mod sample;
 
+pub(crate) use args::{is_json, named, read};
 pub(crate) use info::{InfoArgs, run as info};
 pub(crate) use mesh::{MeshArgs, run as mesh};
 pub(crate) use sample::{SampleArgs, run as sample};

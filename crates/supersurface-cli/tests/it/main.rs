@@ -1,5 +1,6 @@
 //! Integration tests of the command, one binary.
 
+mod contact;
 mod degenerate;
 mod exit_status;
 mod fit;

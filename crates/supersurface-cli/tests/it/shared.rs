@@ -100,3 +100,31 @@ fn real_rings_are_toroids_and_real_packages_are_not() {
         assert_eq!(family(&format!("data/real/{solid}.pcd")), "superellipsoid", "{solid}");
     }
 }
+
+#[test]
+fn verified_contacts_are_met_and_bounded() {
+    let Some(shared) = shared() else { return };
+    let file = shared.join("data/contact/cases.json");
+    let words = ["contact", "--cases", text(&file), "-o", "-", "--repeat", "0"];
+    let told = run(&words).ended(0).stdout;
+    let cases = json(&file);
+    let cases = cases.as_array().unwrap();
+    assert_eq!(told.lines().count(), cases.len());
+    for (case, line) in cases.iter().zip(told.lines()) {
+        let line: Value = serde_json::from_str(line).unwrap();
+        assert!(line["id"] == case["id"] && line["status"] == "ok", "{line}");
+        let [size, low, high, truth] = [
+            &case["scale"],
+            &case["truth"]["lo"],
+            &case["truth"]["hi"],
+            &case["truth"]["signed_distance"],
+        ]
+        .map(|v| v.as_f64().unwrap());
+        let [distance, lo, hi] = ["signed_distance", "lo", "hi"].map(|k| line[k].as_f64().unwrap());
+        let near = 1e-9 * size;
+        assert!(low - near <= distance && distance <= high + near, "{line}");
+        assert!(distance * truth > 0.0 || truth.abs() <= near, "{line}");
+        assert!(lo <= distance && distance <= hi, "{line}");
+        assert!(lo <= high + 1e-13 * size && hi >= low - 1e-13 * size, "{line}");
+    }
+}

@@ -233,7 +233,7 @@ fn pose(fields: &mut Map<String, Value>, at: &str) -> Result<Pose, Fault> {
 }
 
 /// A unit quaternion from numbers that are one but for rounding.
-fn quaternion([w, x, y, z]: [f64; 4]) -> Result<UnitQuaternion<f64>, String> {
+pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Result<UnitQuaternion<f64>, String> {
     let q = Quaternion::new(w, x, y, z);
     let length = q.norm();
     if (length - 1.0).abs() <= 1e-3 {

@@ -1,5 +1,6 @@
 //! Integration tests of the readers and writers, one binary.
 
+mod contacts;
 mod crowded;
 mod faults;
 mod formats;
