@@ -7,6 +7,7 @@
 use super::chart::Chart;
 use super::descent::{Minimum, descend};
 use super::difference::{Difference, Triple, scaled, sum, unit};
+use super::gilbert::gilbert;
 
 /// The first limit of the powers.
 const FIRST: f64 = 3.0;
@@ -21,7 +22,12 @@ pub(super) fn settle(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     if direct.expansion.value < best.expansion.value {
         best = Minimum { settled: false, ..direct };
     }
-    best.evaluations += direct.evaluations;
+    if !best.settled && best.expansion.value < 0.0 {
+        let other = gilbert(pair, &best.normal);
+        if other.expansion.value <= best.expansion.value {
+            best = other;
+        }
+    }
     best
 }
 
@@ -31,7 +37,6 @@ fn continued(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     let mut rounded = pair.rounded(limit);
     let mut here = descend(&rounded, start);
     let mut before: Option<(f64, Triple)> = None;
-    let mut evaluations = here.evaluations;
     while limit < sharpest {
         let next_limit = (2.0 * limit).min(sharpest);
         let next = pair.rounded(next_limit);
@@ -49,8 +54,6 @@ fn continued(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         before = Some((limit, n[0]));
         (limit, rounded) = (next_limit, next);
         here = descend(&rounded, &guess);
-        evaluations += here.evaluations;
     }
-    here.evaluations = evaluations;
     here
 }

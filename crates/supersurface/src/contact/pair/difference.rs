@@ -24,7 +24,7 @@ use crate::shape::Posed;
 pub(super) type Triple = [f64; 3];
 
 /// Centres are no farther apart along an axis than this, in metres: squares overflow.
-const FARTHEST: f64 = 1e300;
+pub(super) const FARTHEST: f64 = 1e300;
 
 /// Two bodies in A's frame, in units of their size.
 #[derive(Clone, Debug)]

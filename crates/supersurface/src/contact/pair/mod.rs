@@ -1,5 +1,6 @@
 //! Two convex bodies: from the one function of a pair (`difference`) by Newton's method in coordinates that flat faces
-//! need (`chart`, `descent`), over rounder bodies where it stalls (`continuation`), to the least of all minima
+//! need (`chart`, `descent`), over rounder bodies or a
+//! simplex where it stalls (`continuation`, `gilbert`), to the least of all minima
 //! (`cells`), the points that it belongs to (`witness`) and its derivatives (`derivative`).
 
 mod cells;
@@ -9,6 +10,7 @@ mod convex;
 mod derivative;
 mod descent;
 mod difference;
+mod gilbert;
 mod query;
 mod witness;
 

@@ -13,7 +13,7 @@ use super::Convex;
 use super::cells::{first_guess, least};
 use super::continuation::settle;
 use super::descent::Minimum;
-use super::difference::{Difference, Triple, dot};
+use super::difference::{Difference, FARTHEST, Triple, dot};
 use super::witness::Witnesses;
 use crate::shape::Posed;
 use crate::{Direction, Point, Vector};
@@ -76,9 +76,17 @@ pub fn pair(a: &Posed<Convex>, b: &Posed<Convex>, start: &mut WarmStart) -> Cont
 /// The same with bounds at most `tolerance` wide, in metres, where rounding and three million cells allow it. For
 /// depths it takes milliseconds rather than microseconds.
 pub fn certify(a: &Posed<Convex>, b: &Posed<Convex>, tolerance: f64) -> Contact {
+    let quick = pair(a, b, &mut WarmStart::default());
+    if quick.bounds[1] - quick.bounds[0] <= tolerance {
+        return quick;
+    }
     let size = Difference::new(a, b).size;
     let tolerance = (tolerance / size).max(0.0);
-    answer(a, b, &mut WarmStart::default(), tolerance, MANY_CELLS).contact(a, b)
+    let mut found = answer(a, b, &mut WarmStart::default(), tolerance, MANY_CELLS).contact(a, b);
+    // where the cells ran out, the coarse search may know more
+    found.bounds[0] = found.bounds[0].max(quick.bounds[0]);
+    found.bounds[1] = found.bounds[1].min(quick.bounds[1]);
+    found
 }
 
 /// True where the bodies overlap or touch. Cheaper than [`pair`] for deep overlaps, which are not measured.
@@ -134,10 +142,15 @@ impl Answer {
         let above = if distance >= 0.0 { witnesses.distance() } else { -self.least_depth };
         let reach = dot(&n, &pair.centre).abs() + found.expansion.value.abs();
         let error = reach * (ROUNDING + a.shape().error() + b.shape().error());
+        let apart = b.pose().translation.vector - a.pose().translation.vector;
+        let beyond = if apart.amax() > FARTHEST { f64::INFINITY } else { 0.0 };
         let world = |p: &Triple| a.pose() * Point::from(Vector::from(*p) * pair.size);
         Contact {
             distance: distance * pair.size,
-            bounds: [(distance - error) * pair.size, (above.max(distance) + error) * pair.size],
+            bounds: [
+                (distance - error) * pair.size,
+                (above.max(distance) + error) * pair.size + beyond,
+            ],
             normal: Direction::new_normalize(a.pose().rotation * Vector::from(n)),
             witnesses: [world(&witnesses.of_a), world(&witnesses.of_b)],
         }
