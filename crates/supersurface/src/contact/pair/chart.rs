@@ -18,6 +18,8 @@ const SMALL: f64 = 0.35;
 const TAME: f64 = 0.8;
 /// No component is nearer to 0 than this.
 const LEAST: f64 = 1e-290;
+/// Only components below this may be too near to 0.
+const SUSPECT: f64 = 2e-18;
 /// Longest step, in radians.
 pub(super) const LONGEST: f64 = 0.7;
 
@@ -194,8 +196,7 @@ fn smallest(pair: &Difference, n: &[Triple; 2]) -> [Candidate; 2] {
                 if power >= TAME || rank >= best[1].rank {
                     return;
                 }
-                let least = floor(power);
-                let value = if value.abs() < least { least.copysign(value) } else { value };
+                let value = if value.abs() < SUSPECT { from_floor(value, power) } else { value };
                 let candidate = Candidate {
                     rank,
                     across,
@@ -232,10 +233,11 @@ fn smallest(pair: &Difference, n: &[Triple; 2]) -> [Candidate; 2] {
     best
 }
 
-/// The component that touches a face nearest to its middle: `|t|^k` is 1e-18 there, if numbers reach so far.
+/// A component no nearer to 0 than where `|t|^k` is 1e-18, if numbers reach so far.
 #[inline(always)]
-fn floor(power: f64) -> f64 {
-    LEAST.max((-41.0 / power).exp())
+fn from_floor(value: f64, power: f64) -> f64 {
+    let floor = LEAST.max((-41.0 / power).exp());
+    if value.abs() < floor { floor.copysign(value) } else { value }
 }
 
 /// Two orthonormal tangents (Duff and others, *Building an Orthonormal Basis, Revisited*, 2017).
