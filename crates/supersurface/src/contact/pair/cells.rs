@@ -18,6 +18,10 @@ use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Cells of the first level along an edge of the cube.
 const FIRST: usize = 4;
+/// A minimum explains where `φ` falls to it within this, in radians, and by this cosine at least: less strict misses
+/// minima next to each other, stricter doubles the descents.
+const NEIGHBOURHOOD: f64 = 0.5;
+const STRAIGHT: f64 = 0.65;
 /// Half width of cells below which a descent says more than smaller cells.
 const SMALLEST: f64 = 0.04;
 /// Minima this near to the best are as good, in the pair's size, and this far away, in radians, others.
@@ -270,12 +274,12 @@ impl<T: Lane, const N: usize> Job for Judgement<'_, T, N> {
 }
 
 /// True where `φ`, of gradient `steep` along the sphere, falls towards a minimum near by.
-#[inline(always)]
 fn falls_to(from: &Triple, steep: &Triple, minimum: &Triple) -> bool {
     let to = difference(minimum, from);
     let distance = dot(&to, &to).sqrt();
-    distance < 1e-3
-        || distance < 0.5 && -dot(steep, &to) > 0.65 * distance * dot(steep, steep).sqrt()
+    let fall = -dot(steep, &to);
+    distance < DISTINCT
+        || distance < NEIGHBOURHOOD && fall > STRAIGHT * distance * dot(steep, steep).sqrt()
 }
 
 /// False where every direction of the cell looks away from B.

@@ -1,8 +1,9 @@
 //! From a direction down to a minimum of `φ`: Newton's method on the sphere in the chart of flat faces.
 //!
 //! The Riemannian second derivative is the tangential one less `φ` times the metric; where it is not positive
-//! definite it is shifted. Where a step is refused it is shortened, and every other time the majorant's step is
-//! taken, which always descends for exponents up to 1.
+//! definite it is shifted. Where a step is refused it is shortened, as are the next ones, and every other time the
+//! majorant's step is taken, which always descends for exponents up to 1. A step may lead far along a face, where `t`
+//! grows by magnitudes, so it is its length before it is bent that is bounded.
 
 use super::chart::{Chart, LONGEST};
 use super::difference::{Difference, Expansion, Triple, dot};
@@ -26,8 +27,6 @@ pub(super) struct Minimum {
     pub(super) expansion: Expansion,
     /// False where it gave up.
     pub(super) settled: bool,
-    /// Evaluations of `φ`.
-    pub(super) evaluations: u32,
 }
 
 impl Minimum {
@@ -85,8 +84,8 @@ impl Job for Descent<'_> {
 
 #[inline(always)]
 fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut here =
-        Minimum { normal: *start, expansion: Expansion::NONE, settled: false, evaluations: 0 };
+    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false };
+    let mut evaluations = 0;
     let mut chart = Chart::at(pair, start);
     let mut trial = *start;
     let mut plan = Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY };
@@ -96,7 +95,7 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     loop {
         let next = Chart::at(pair, &trial);
         let expansion = pair.expand::<FUSED>(&trial, &next.tangents);
-        here.evaluations += 1;
+        evaluations += 1;
         let gained = here.expansion.value - expansion.value;
         let flat = gained > -4e-16 && plan.estimate * factor < 1e-14;
         let enough = if majorised { 0.0 } else { 1e-4 * factor * plan.predicted };
@@ -131,7 +130,7 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
             factor *= 0.25;
             radius = chart.length(&plan.newton) * factor;
         }
-        if here.evaluations >= MOST || refusals > REFUSALS {
+        if evaluations >= MOST || refusals > REFUSALS {
             return here;
         }
         majorised = refusals > 0 && refusals % 2 == 0;
