@@ -60,6 +60,10 @@ struct Candidate {
 }
 
 impl Chart {
+    /// Before the first one.
+    pub(super) const NONE: Self =
+        Self { tangents: [[[0.0; 3]; 2]; 2], lengths: [0.0; 2], seams: [None, None] };
+
     #[inline(always)]
     pub(super) fn at(pair: &Difference, n: &[Triple; 2]) -> Self {
         let [first, second] = smallest(pair, n);

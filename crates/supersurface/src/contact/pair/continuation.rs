@@ -13,14 +13,18 @@ use super::gilbert::gilbert;
 const FIRST: f64 = 3.0;
 
 /// The minimum below a start, by rounder bodies if need be.
+#[inline]
 pub(super) fn settle(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     let direct = descend(pair, start);
-    if direct.settled {
-        return direct;
-    }
+    if direct.settled { direct } else { otherwise(pair, &direct) }
+}
+
+/// The other ways down, from where the direct one stalled.
+#[cold]
+fn otherwise(pair: &Difference, direct: &Minimum) -> Minimum {
     let mut best = continued(pair, &direct.normal);
     if direct.expansion.value < best.expansion.value {
-        best = Minimum { settled: false, ..direct };
+        best = *direct;
     }
     if !best.settled && best.expansion.value < 0.0 {
         let other = gilbert(pair, &best.normal);

@@ -63,31 +63,31 @@ struct Plan {
 }
 
 /// The descent from `start`, a direction in both frames.
+#[inline]
 pub(super) fn descend(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut found = None;
-    dispatch(Descent { pair, start, into: &mut found });
-    found.expect("the job ran")
+    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false };
+    dispatch(Descent { pair, here: &mut here });
+    here
 }
 
 struct Descent<'a> {
     pair: &'a Difference,
-    start: &'a [Triple; 2],
-    into: &'a mut Option<Minimum>,
+    here: &'a mut Minimum,
 }
 
 impl Job for Descent<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        *self.into = Some(run::<FUSED>(self.pair, self.start));
+        self.here.settled = run::<FUSED>(self.pair, self.here);
     }
 }
 
+/// Moves to the minimum; false where it gives up.
 #[inline(always)]
-fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false };
+fn run<const FUSED: bool>(pair: &Difference, here: &mut Minimum) -> bool {
+    let mut trial = here.normal;
+    let mut chart = Chart::NONE;
     let mut evaluations = 0;
-    let mut chart = Chart::at(pair, start);
-    let mut trial = *start;
     let mut plan = Plan { newton: [0.0; 2], predicted: 0.0, estimate: f64::INFINITY };
     let (mut factor, mut refusals, mut majorised, mut last) = (1.0, 0, false, false);
     let mut radius = LONGEST;
@@ -108,18 +108,16 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
             // a step that was expected to gain this little has squared its error
             let good = !majorised && factor == 1.0 && plan.estimate < 1e-11;
             if good && slope < 1e-7 || plan.estimate < 1e-14 && slope < FACING {
-                here.settled = true;
-                return here;
+                return true;
             }
             plan = self::plan::<FUSED>(&here.expansion, &chart);
             if plan.estimate < 1e-15 && slope < FACING {
-                here.settled = true;
-                return here;
+                return true;
             }
             // two steps that changed nothing
             let idle = gained.abs() < 4e-16 && slope > 0.5 * before;
             if idle && last {
-                return here;
+                return false;
             }
             last = idle;
             refusals = 0;
@@ -131,7 +129,7 @@ fn run<const FUSED: bool>(pair: &Difference, start: &[Triple; 2]) -> Minimum {
             radius = chart.length(&plan.newton) * factor;
         }
         if evaluations >= MOST || refusals > REFUSALS {
-            return here;
+            return false;
         }
         majorised = refusals > 0 && refusals % 2 == 0;
         let by = if majorised {

@@ -135,12 +135,14 @@ impl Difference {
         let apart = back * apart.map(|v| v.clamp(-FARTHEST, FARTHEST));
         // bodies far apart are points, whose size would overflow what is divided by it
         let size = (0.5 * largest_a + 0.5 * largest_b).max(1e-100 * apart.amax());
+        let m = turn.matrix();
+        let by_size = |a: Triple| [a[0] / size, a[1] / size, a[2] / size];
         Self {
-            semi_axes: axes.map(|a| a.map(|v| v / size)),
+            semi_axes: [by_size(axes[0]), by_size(axes[1])],
             dual: [a.shape().dual, b.shape().dual],
             inverse_dual: [a.shape().inverse_dual, b.shape().inverse_dual],
-            turn: std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)])),
-            centre: std::array::from_fn(|k| apart[k] / size),
+            turn: [[m.m11, m.m12, m.m13], [m.m21, m.m22, m.m23], [m.m31, m.m32, m.m33]],
+            centre: by_size(apart.into()),
             rolling: (a.shape().rolling + b.shape().rolling) / size,
             size,
         }

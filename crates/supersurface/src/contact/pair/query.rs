@@ -108,6 +108,7 @@ pub(super) struct Answer {
     pub(super) unique: bool,
 }
 
+#[inline]
 pub(super) fn answer(
     a: &Posed<Convex>,
     b: &Posed<Convex>,
@@ -133,6 +134,7 @@ pub(super) fn answer(
 }
 
 impl Answer {
+    #[inline]
     pub(super) fn contact(&self, a: &Posed<Convex>, b: &Posed<Convex>) -> Contact {
         let (pair, found) = (&self.pair, &self.minimum);
         let n = found.normal[0];

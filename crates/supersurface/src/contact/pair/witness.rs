@@ -12,7 +12,7 @@ use crate::shape::{Implicit, Posed};
 use crate::{Point, Vector};
 
 /// Support points that face each other as well as this, in the pair's size, are taken as they are.
-const FACING: f64 = 1e-11;
+const FACING: f64 = 2e-10;
 /// A gauge of a witness point may exceed 1 by this.
 const ON_SURFACE: f64 = 1e-11;
 /// Steps of the ellipsoid method, each of which takes a fifth of the area.
