@@ -257,7 +257,10 @@ impl<T: Lane, const N: usize> Job for Judgement<'_, T, N> {
             }
         }
         let zero = T::of(0.0);
+        let [p, q, r] = self.best;
+        let best_everywhere = zero - (p * p + q * q + r * r).sqrt();
         for i in 0..N {
+            shared[i] = if shared[i] < zero { best_everywhere } else { shared[i] };
             // below 0 the least is not at a corner: that of the cone around the cell
             let radial = values.value[i] - ball;
             let square = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];

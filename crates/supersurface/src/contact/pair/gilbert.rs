@@ -31,8 +31,7 @@ pub(super) fn gilbert(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         let n = scaled(&nearest, -1.0 / distance);
         normal = [n, pair.to_b(&n)];
     }
-    let end = descend(pair, &best.1);
-    if end.expansion.value <= best.0 { end } else { descend(pair, start) }
+    descend(pair, &best.1)
 }
 
 /// The point of a simplex of up to four that is nearest to the origin, and the vertices that it lies between.
