@@ -16,6 +16,9 @@ const REFUSALS: i32 = 14;
 /// The support points are to face each other as well as this, in the pair's size.
 const FACING: f64 = 1e-10;
 
+/// Steps, relative to the tangents, that bend a face's coordinates by no more than rounding of the last step.
+const SMALL: f64 = 1e-3;
+
 /// Curvature below which a minimum is a valley.
 const FLAT: f64 = 1e-9;
 
@@ -27,6 +30,8 @@ pub(super) struct Minimum {
     pub(super) expansion: Expansion,
     /// False where it gave up.
     pub(super) settled: bool,
+    /// What the value may be off by: that of the last step, where it was not evaluated.
+    pub(super) slack: f64,
 }
 
 impl Minimum {
@@ -65,7 +70,7 @@ struct Plan {
 /// The descent from `start`, a direction in both frames.
 #[inline]
 pub(super) fn descend(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false };
+    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false, slack: 0.0 };
     dispatch(Descent { pair, here: &mut here });
     here
 }
@@ -110,6 +115,7 @@ fn run<const FUSED: bool>(pair: &Difference, here: &mut Minimum) -> bool {
             if good && slope < 1e-7 || plan.estimate < 1e-14 && slope < FACING {
                 return true;
             }
+            let full = !majorised && factor == 1.0 && plan.estimate.is_finite();
             plan = self::plan::<FUSED>(&here.expansion, &chart);
             if plan.estimate < 1e-15 && slope < FACING {
                 return true;
@@ -118,6 +124,15 @@ fn run<const FUSED: bool>(pair: &Difference, here: &mut Minimum) -> bool {
             let idle = gained.abs() < 4e-16 && slope > 0.5 * before;
             if idle && last {
                 return false;
+            }
+            // Newton's method squares the error: where it has been seen to, the last step needs no evaluation
+            let ratio = slope / before;
+            let small = plan.newton[0].abs().max(plan.newton[1].abs()) < SMALL;
+            if full && plan.estimate < 1e-11 && small && slope * ratio * ratio < 0.1 * FACING {
+                here.expansion.advance(pair, &here.normal, &plan.newton, plan.predicted);
+                here.normal = chart.moved(&here.normal, &chart.bent::<FUSED>(&plan.newton));
+                here.slack = plan.predicted;
+                return true;
             }
             last = idle;
             refusals = 0;

@@ -55,6 +55,43 @@ pub(super) struct Expansion {
     pub(super) hessian: [f64; 3],
     /// The same of a quadratic that lies above `φ`, for exponents up to 1: weights `x_i/n_i`.
     pub(super) majorant: [f64; 3],
+    compliance: [Compliance; 2],
+}
+
+/// The second derivative of a body's support function in factors.
+#[derive(Clone, Copy, Debug)]
+struct Compliance {
+    /// `1/n_i`, and the shares `[s1, s2]`.
+    inverse: Triple,
+    shares: [f64; 2],
+    /// What stands before the products of `inner` and of `outer` rates.
+    weights: [f64; 2],
+    /// `ρ1 - ρ2` and `s1 ρ1 + s2 ρ2 - ρ3` of the two tangents.
+    inner: [f64; 2],
+    outer: [f64; 2],
+}
+
+impl Compliance {
+    const NONE: Self = Self {
+        inverse: [0.0; 3],
+        shares: [0.0; 2],
+        weights: [0.0; 2],
+        inner: [0.0; 2],
+        outer: [0.0; 2],
+    };
+
+    /// How the support point moves with the normal along the tangents, and how much farther back it lies along the old
+    /// normal, of second order.
+    #[inline(always)]
+    fn moved(&self, by: &[f64; 2]) -> (Triple, f64) {
+        let inner = by[0] * self.inner[0] + by[1] * self.inner[1];
+        let outer = by[0] * self.outer[0] + by[1] * self.outer[1];
+        let [p, q] = [self.weights[0] * inner, self.weights[1] * outer];
+        let [s1, s2] = self.shares;
+        let x = &self.inverse;
+        let moved = [x[0] * (q * s1 + p), x[1] * (q * s2 - p), -x[2] * q];
+        (moved, 0.5 * (p * inner + q * outer))
+    }
 }
 
 impl Expansion {
@@ -65,7 +102,22 @@ impl Expansion {
         points: [[0.0; 3]; 2],
         hessian: [0.0; 3],
         majorant: [0.0; 3],
+        compliance: [Compliance::NONE; 2],
     };
+
+    /// After a small move of the normal along the tangents, by the second derivatives: all but the derivatives, to
+    /// third order. `gain` is what the value loses.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, pair: &Difference, n: &[Triple; 2], by: &[f64; 2], gain: f64) {
+        for b in 0..2 {
+            let (moved, back) = self.compliance[b].moved(by);
+            for k in 0..3 {
+                self.points[b][k] += moved[k] - back * n[b][k];
+            }
+        }
+        self.gap = pair.gap(&self.points);
+        self.value -= gain;
+    }
 }
 
 /// `φ` and its gradient in A's frame for a block of directions.
@@ -198,6 +250,7 @@ impl Difference {
         let found = shares::<FUSED, f64, 2>(&u, &by_body(&self.dual), &by_body(&self.inverse_dual));
         let mut points = [[0.0; 3]; 2];
         let (mut hessian, mut majorant) = ([0.0; 3], [0.0; 3]);
+        let mut compliance = [Compliance::NONE; 2];
         for b in 0..2 {
             let [s1, s2] = [found.inner[0][b], found.inner[1][b]];
             let [whole, s3] = [found.outer[0][b], found.outer[1][b]];
@@ -219,6 +272,8 @@ impl Difference {
             ];
             let c2 = h * (self.dual[b][1] - 1.0) * whole * s1 * s2;
             let c1 = h * (self.dual[b][0] - 1.0) * whole * s3;
+            compliance[b] =
+                Compliance { inverse: scaled, shares: [s1, s2], weights: [c2, c1], inner, outer };
             for (m, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
                 hessian[m] += c2 * inner[i] * inner[j] + c1 * outer[i] * outer[j];
                 majorant[m] += h
@@ -227,10 +282,15 @@ impl Difference {
                         + weights[2] * rates[i][2] * rates[j][2]);
             }
         }
-        let far = self.to_a(&points[1]);
-        let gap = difference(&sum(&points[0], &far), &self.centre);
+        let gap = self.gap(&points);
         let value = found.support[0] + found.support[1] - dot(&n[0], &self.centre);
-        Expansion { value, gap, points, hessian, majorant }
+        Expansion { value, gap, points, hessian, majorant, compliance }
+    }
+
+    /// The gradient of `φ` from the support points in the bodies' own frames.
+    #[inline(always)]
+    fn gap(&self, [own, other]: &[Triple; 2]) -> Triple {
+        difference(&sum(own, &self.to_a(other)), &self.centre)
     }
 
     /// `φ` and its gradient for a block of unit directions of A's frame.

@@ -150,8 +150,8 @@ impl Answer {
         Contact {
             distance: distance * pair.size,
             bounds: [
-                (distance - error) * pair.size,
-                (above.max(distance) + error) * pair.size + beyond,
+                (distance - found.slack - error) * pair.size,
+                (above.max(distance) + found.slack + error) * pair.size + beyond,
             ],
             normal: Direction::new_normalize(a.pose().rotation * Vector::from(n)),
             witnesses: [world(&witnesses.of_a), world(&witnesses.of_b)],
