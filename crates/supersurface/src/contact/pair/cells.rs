@@ -13,11 +13,13 @@
 
 use super::continuation::settle;
 use super::descent::Minimum;
-use super::difference::{Difference, Triple, Values, cross, difference, dot, narrow, scaled, unit};
+use super::difference::{Difference, Triple, Values, cross, difference, dot, scaled, unit};
+use super::proven::Proven;
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
-/// Cells of the first level along an edge of the cube.
+/// Cells of the first level along an edge of the cube, and in all.
 const FIRST: usize = 4;
+pub(super) const ROOTS: usize = 6 * FIRST * FIRST;
 /// A minimum explains where `φ` falls to it within this, in radians, and by this cosine at least: less strict misses
 /// minima next to each other, stricter doubles the descents.
 const NEIGHBOURHOOD: f64 = 0.5;
@@ -30,18 +32,32 @@ const DISTINCT: f64 = 1e-4;
 /// Minima that are told apart.
 const MINIMA: usize = 64;
 
-/// A square on the face `[-1, 1]²`.
+/// A square on a face `[-1, 1]²` of the cube.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     middle: [f64; 2],
     half: f64,
+    /// The cell of the first level that it is part of.
+    root: usize,
 }
 
 impl Cell {
+    fn first(root: usize) -> Self {
+        let half = 1.0 / FIRST as f64;
+        let place = |k: usize| (2 * (k % FIRST) + 1) as f64 * half - 1.0;
+        Self { middle: [place(root / FIRST), place(root)], half, root }
+    }
+
     fn quarters(&self) -> [Self; 4] {
         let half = 0.5 * self.half;
-        [(-half, -half), (-half, half), (half, -half), (half, half)]
-            .map(|(dx, dy)| Self { middle: [self.middle[0] + dx, self.middle[1] + dy], half })
+        [(-half, -half), (-half, half), (half, -half), (half, half)].map(|(dx, dy)| {
+            let middle = [self.middle[0] + dx, self.middle[1] + dy];
+            Self { middle, half, root: self.root }
+        })
+    }
+
+    fn face(&self) -> usize {
+        self.root / (FIRST * FIRST)
     }
 }
 
@@ -53,7 +69,10 @@ struct Face {
 }
 
 impl Face {
-    fn new(number: usize) -> Self {
+    const ALL: [Self; 6] =
+        [Self::new(0), Self::new(1), Self::new(2), Self::new(3), Self::new(4), Self::new(5)];
+
+    const fn new(number: usize) -> Self {
         let axis = number % 3;
         let side = if number < 3 { 1.0 } else { -1.0 };
         Self { axes: [axis, (axis + 1) % 3, (axis + 2) % 3], side }
@@ -84,12 +103,19 @@ pub(super) struct Least {
 }
 
 /// Searches the sphere, given a minimum where the bodies overlap; cells are split until the bound is within
-/// `tolerance` (in the pair's size) or `most` of them were looked at.
-pub(super) fn least(pair: &Difference, known: Minimum, tolerance: f64, most: usize) -> Least {
+/// `tolerance` (in the pair's size) or `most` of them were looked at. What is proven of the pair already is left out, and
+/// what is proven now is added.
+pub(super) fn least(
+    pair: &Difference,
+    known: Minimum,
+    proven: &mut Proven,
+    tolerance: f64,
+    most: usize,
+) -> Least {
     if tolerance > 10.0 * <f32 as Precision>::SLACK {
-        search::<f32, 16>(pair, known, tolerance, most)
+        search::<f32, 16>(pair, known, proven, tolerance, most)
     } else {
-        search::<f64, 8>(pair, known, tolerance, most)
+        search::<f64, 8>(pair, known, proven, tolerance, most)
     }
 }
 
@@ -109,69 +135,84 @@ impl Precision for f64 {
 fn search<T: Lane + Precision, const N: usize>(
     pair: &Difference,
     known: Minimum,
+    proven: &mut Proven,
     tolerance: f64,
     most: usize,
 ) -> Least {
     let mut found = Least { minimum: known, bound: f64::INFINITY, unique: true };
-    let mut minima = vec![known];
+    let mut minima = Vec::with_capacity(8);
+    minima.push((known.expansion.value, known.normal[0]));
+    let others = proven.minima.iter().filter(|m| m.0 > known.expansion.value + ALIKE);
+    minima.extend(others);
     let mut looked_at = 0;
-    let mut open: Vec<Cell> = Vec::with_capacity(64);
-    for number in 0..6 {
-        let face = Face::new(number);
-        let centre = face.local(&pair.centre);
-        let step = 1.0 / FIRST as f64;
-        for i in 0..FIRST * FIRST {
-            let place = |k: usize| (2 * k + 1) as f64 * step - 1.0;
-            let cell = Cell { middle: [place(i / FIRST), place(i % FIRST)], half: step };
-            if faces(&cell, &centre) {
-                open.push(cell);
-            }
+    let centres = Face::ALL.map(|face| face.local(&pair.centre));
+    let mut open: Vec<Cell> = Vec::with_capacity(2 * ROOTS);
+    for (root, bound) in proven.bounds.iter_mut().enumerate() {
+        if f64::from(*bound) > known.expansion.value + ALIKE {
+            continue;
         }
-        while let Some(last) = open.last() {
-            let mut cells = [*last; N];
-            let taken = open.len().min(N);
-            let from = open.len() - taken;
-            cells[..taken].copy_from_slice(&open[from..]);
-            open.truncate(from);
-            let block = Block::<T, N>::new(pair, face, &cells, &found.minimum);
-            looked_at += taken;
-            for (i, cell) in cells[..taken].iter().enumerate() {
-                let best = found.minimum.expansion.value;
-                let own = block.own[i].wide() - T::SLACK;
-                let bound = own.max(block.shared[i].wide() - T::SLACK);
-                // might it hold a better minimum than those that are known?
-                let hopeful = own < best && minima.len() < MINIMA && {
-                    let (middle, steep) = block.fall(i);
-                    !minima.iter().any(|m| falls_to(&middle, &steep, &m.normal[0]))
-                };
-                let small = cell.half <= SMALLEST && bound >= best - tolerance;
-                if block.values.value[i].wide() < best - T::SLACK || hopeful && small {
-                    let middle = face.direction(cell);
-                    let other = settle(pair, &[middle, pair.to_b(&middle)]);
-                    minima.push(other);
-                    if other.expansion.value < best {
-                        found.minimum = other;
+        let cell = Cell::first(root);
+        if faces(&cell, &centres) {
+            *bound = f32::INFINITY;
+            open.push(cell);
+        } else {
+            *bound = f32::NEG_INFINITY;
+        }
+    }
+    while let Some(last) = open.last() {
+        let mut cells = [*last; N];
+        let taken = open.len().min(N);
+        let from = open.len() - taken;
+        cells[..taken].copy_from_slice(&open[from..]);
+        open.truncate(from);
+        let block = Block::<T, N>::new(pair, &cells, &found.minimum);
+        looked_at += taken;
+        for (i, cell) in cells[..taken].iter().enumerate() {
+            let best = found.minimum.expansion.value;
+            let own = block.own[i].wide() - T::SLACK;
+            let bound = own.max(block.shared[i].wide() - T::SLACK);
+            // might it hold a better minimum than those that are known?
+            let hopeful = own < best && minima.len() < MINIMA && {
+                let (middle, steep) = block.fall(i);
+                !minima.iter().any(|(_, n)| falls_to(&middle, &steep, n))
+            };
+            let small = cell.half <= SMALLEST && bound >= best - tolerance;
+            if block.values.value[i].wide() < best - T::SLACK || hopeful && small {
+                let middle = Face::ALL[cell.face()].direction(cell);
+                let other = settle(pair, &[middle, pair.to_b(&middle)]);
+                minima.push((other.expansion.value, other.normal[0]));
+                if other.expansion.value < best {
+                    found.minimum = other;
+                }
+            }
+            let far = bound < found.minimum.expansion.value - tolerance;
+            let all = &mut proven.bounds[cell.root];
+            if looked_at < most && (far || hopeful && !small) {
+                for quarter in cell.quarters() {
+                    if faces(&quarter, &centres) {
+                        open.push(quarter);
+                    } else {
+                        // not looked at, and may be wanted once B has moved
+                        *all = f32::NEG_INFINITY;
                     }
                 }
-                let far = bound < found.minimum.expansion.value - tolerance;
-                if looked_at < most && (far || hopeful && !small) {
-                    open.extend(cell.quarters().iter().filter(|c| faces(c, &centre)));
-                } else {
-                    found.bound = found.bound.min(bound);
-                }
+            } else {
+                found.bound = found.bound.min(bound);
+                *all = all.min(own as f32);
             }
         }
     }
     let best = found.minimum.expansion.value;
     found.bound = found.bound.min(best);
-    found.unique = !minima.iter().any(|m| {
-        let apart = difference(&m.normal[0], &found.minimum.normal[0]);
-        m.expansion.value < best + ALIKE && dot(&apart, &apart) > DISTINCT * DISTINCT
+    proven.remember(&minima);
+    found.unique = !minima.iter().any(|(value, normal)| {
+        let apart = difference(normal, &found.minimum.normal[0]);
+        *value < best + ALIKE && dot(&apart, &apart) > DISTINCT * DISTINCT
     });
     found
 }
 
-/// What is known of some cells of a face.
+/// What is known of some cells.
 struct Block<T, const N: usize> {
     directions: [[T; N]; 3],
     values: Values<T, N>,
@@ -181,7 +222,7 @@ struct Block<T, const N: usize> {
 }
 
 impl<T: Lane, const N: usize> Block<T, N> {
-    fn new(pair: &Difference, face: Face, cells: &[Cell; N], best: &Minimum) -> Self {
+    fn new(pair: &Difference, cells: &[Cell; N], best: &Minimum) -> Self {
         let zero = [T::of(0.0); N];
         let mut block = Self {
             directions: [zero; 3],
@@ -189,8 +230,7 @@ impl<T: Lane, const N: usize> Block<T, N> {
             own: [T::of(f64::INFINITY); N],
             shared: [T::of(f64::INFINITY); N],
         };
-        let best = narrow(&face.local(&best.expansion.gap));
-        dispatch(Judgement { pair, face, cells, best, into: &mut block });
+        dispatch(Judgement { pair, cells, best: &best.expansion.gap, into: &mut block });
         block
     }
 
@@ -204,9 +244,8 @@ impl<T: Lane, const N: usize> Block<T, N> {
 
 struct Judgement<'a, T, const N: usize> {
     pair: &'a Difference,
-    face: Face,
     cells: &'a [Cell; N],
-    best: [T; 3],
+    best: &'a Triple,
     into: &'a mut Block<T, N>,
 }
 
@@ -214,31 +253,41 @@ impl<T: Lane, const N: usize> Job for Judgement<'_, T, N> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let zero = [T::of(0.0); N];
-        let (mut x, mut y, mut half) = (zero, zero, zero);
+        let (mut x, mut y, mut half, mut side) = (zero, zero, zero, zero);
+        // in each cell's own order of axes, and in arrays of their own, as only those become vectors
+        let mut best = [zero; 3];
         for (i, cell) in self.cells.iter().enumerate() {
             x[i] = T::of(cell.middle[0]);
             y[i] = T::of(cell.middle[1]);
             half[i] = T::of(cell.half);
+            let face = Face::ALL[cell.face()];
+            side[i] = T::of(face.side);
+            let [across, along, up] = face.local(self.best);
+            best[0][i] = T::of(across);
+            best[1][i] = T::of(along);
+            best[2][i] = T::of(up);
         }
-        let [across, along, up] = self.face.axes;
-        let (one, side, ball) = (T::of(1.0), T::of(self.face.side), T::of(self.pair.rolling));
-        // in the face's order of axes, and in arrays of their own, as only those become vectors
+        let (one, ball) = (T::of(1.0), T::of(self.pair.rolling));
         let mut n = [zero; 3];
         for i in 0..N {
             n[0][i] = one / (one + x[i] * x[i] + y[i] * y[i]).sqrt();
             n[1][i] = x[i] * n[0][i];
             n[2][i] = y[i] * n[0][i];
         }
-        let mut directions = [n[0]; 3];
-        directions[along] = n[1];
-        directions[up] = n[2];
-        for i in 0..N {
-            directions[across][i] = side * n[0][i];
+        let mut directions = [zero; 3];
+        for (i, cell) in self.cells.iter().enumerate() {
+            let [across, along, up] = Face::ALL[cell.face()].axes;
+            directions[across][i] = side[i] * n[0][i];
+            directions[along][i] = n[1][i];
+            directions[up][i] = n[2][i];
         }
         let values = self.pair.values::<FUSED, T, N>(&directions);
-        let mut v = [values.gradient[across], values.gradient[along], values.gradient[up]];
-        for i in 0..N {
-            v[0][i] = side * v[0][i];
+        let mut v = [zero; 3];
+        for (i, cell) in self.cells.iter().enumerate() {
+            let [across, along, up] = Face::ALL[cell.face()].axes;
+            v[0][i] = side[i] * values.gradient[across][i];
+            v[1][i] = values.gradient[along][i];
+            v[2][i] = values.gradient[up][i];
         }
         let mut own = [T::of(f64::INFINITY); N];
         let mut shared = own;
@@ -250,15 +299,14 @@ impl<T: Lane, const N: usize> Job for Judgement<'_, T, N> {
                 let shorter = one / (one + p * p + q * q).sqrt();
                 let middle = (n[0][i] + p * n[1][i] + q * n[2][i]) * shorter;
                 let least = (v[0][i] + p * v[1][i] + q * v[2][i]) * shorter;
-                let by_best = (self.best[0] + p * self.best[1] + q * self.best[2]) * shorter;
+                let by_best = (best[0][i] + p * best[1][i] + q * best[2][i]) * shorter;
                 own[i] = own[i].least(least - ball * middle);
                 shared[i] = shared[i].least(by_best);
                 widest[i] = widest[i].least(middle);
             }
         }
         let zero = T::of(0.0);
-        let [p, q, r] = self.best;
-        let best_everywhere = zero - (p * p + q * q + r * r).sqrt();
+        let best_everywhere = T::of(-dot(self.best, self.best).sqrt());
         for i in 0..N {
             shared[i] = if shared[i] < zero { best_everywhere } else { shared[i] };
             // below 0 the least is not at a corner: that of the cone around the cell
@@ -285,10 +333,10 @@ fn falls_to(from: &Triple, steep: &Triple, minimum: &Triple) -> bool {
         || distance < NEIGHBOURHOOD && fall > STRAIGHT * distance * dot(steep, steep).sqrt()
 }
 
-/// False where every direction of the cell looks away from B.
+/// False where every direction of the cell looks away from B, whose centre is given in the order of axes of each face.
 #[inline(always)]
-fn faces(cell: &Cell, centre: &Triple) -> bool {
-    let [x, y] = cell.middle;
+fn faces(cell: &Cell, centres: &[Triple; 6]) -> bool {
+    let ([x, y], centre) = (cell.middle, &centres[cell.face()]);
     centre[0] + x * centre[1] + y * centre[2] + cell.half * (centre[1].abs() + centre[2].abs())
         >= 0.0
 }

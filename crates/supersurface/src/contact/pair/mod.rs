@@ -11,6 +11,7 @@ mod derivative;
 mod descent;
 mod difference;
 mod gilbert;
+mod proven;
 mod query;
 mod witness;
 

@@ -14,6 +14,7 @@ use super::cells::{first_guess, least};
 use super::continuation::settle;
 use super::descent::Minimum;
 use super::difference::{Difference, FARTHEST, Triple, dot};
+use super::proven::Proven;
 use super::witness::Witnesses;
 use crate::shape::Posed;
 use crate::{Direction, Point, Vector};
@@ -42,6 +43,7 @@ pub struct Contact {
 pub struct WarmStart {
     /// The normal in A's frame.
     normal: Option<Triple>,
+    proven: Proven,
 }
 
 /// Widest bounds of the depth, in the pair's size, that [`pair`] is content with.
@@ -95,7 +97,10 @@ pub fn intersect(a: &Posed<Convex>, b: &Posed<Convex>) -> bool {
     let found = settle(&pair, &first_guess(&pair));
     let value = found.expansion.value;
     // a positive minimum is not yet all of them
-    value >= 0.0 && least(&pair, found, value, CELLS).minimum.expansion.value >= 0.0
+    value >= 0.0 && {
+        let least = least(&pair, found, &mut Proven::default(), value, CELLS);
+        least.minimum.expansion.value >= 0.0
+    }
 }
 
 /// What was found, before it is told in the world's frame.
@@ -124,7 +129,8 @@ pub(super) fn answer(
     let minimum = settle(&pair, &guess);
     let mut answer = Answer { pair, minimum, least_depth: f64::NEG_INFINITY, unique: true };
     if minimum.expansion.value > 0.0 {
-        let least = least(&answer.pair, minimum, tolerance, most);
+        start.proven.carry(&answer.pair);
+        let least = least(&answer.pair, minimum, &mut start.proven, tolerance, most);
         answer.minimum = least.minimum;
         answer.least_depth = least.bound;
         answer.unique = least.unique;
