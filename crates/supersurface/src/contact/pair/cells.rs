@@ -16,10 +16,12 @@ use super::descent::Minimum;
 use super::difference::{Difference, Triple, Values, cross, difference, dot, scaled, unit};
 use super::proven::Proven;
 use crate::numeric::lanes::{Job, Lane, dispatch};
+use std::ops::Range;
+use std::slice;
 
-/// Cells of the first level along an edge of the cube, and in all.
+/// Cells of the first level along an edge of the cube, and those of the second in all.
 const FIRST: usize = 4;
-pub(super) const ROOTS: usize = 6 * FIRST * FIRST;
+pub(super) const PARTS: usize = 4 * 6 * FIRST * FIRST;
 /// A minimum explains where `φ` falls to it within this, in radians, and by this cosine at least: less strict misses
 /// minima next to each other, stricter doubles the descents.
 const NEIGHBOURHOOD: f64 = 0.5;
@@ -37,27 +39,39 @@ const MINIMA: usize = 64;
 struct Cell {
     middle: [f64; 2],
     half: f64,
-    /// The cell of the first level that it is part of.
-    root: usize,
+    /// The cell of the second level that it is part of; the first of four for one of the first.
+    part: usize,
 }
 
 impl Cell {
-    fn first(root: usize) -> Self {
+    fn first(number: usize) -> Self {
         let half = 1.0 / FIRST as f64;
         let place = |k: usize| (2 * (k % FIRST) + 1) as f64 * half - 1.0;
-        Self { middle: [place(root / FIRST), place(root)], half, root }
+        Self { middle: [place(number / FIRST), place(number)], half, part: 4 * number }
     }
 
     fn quarters(&self) -> [Self; 4] {
         let half = 0.5 * self.half;
-        [(-half, -half), (-half, half), (half, -half), (half, half)].map(|(dx, dy)| {
-            let middle = [self.middle[0] + dx, self.middle[1] + dy];
-            Self { middle, half, root: self.root }
-        })
+        let next = usize::from(self.is_first());
+        [(-half, -half, 0), (-half, half, 1), (half, -half, 2), (half, half, 3)].map(
+            |(dx, dy, k)| {
+                let middle = [self.middle[0] + dx, self.middle[1] + dy];
+                Self { middle, half, part: self.part + k * next }
+            },
+        )
+    }
+
+    fn is_first(&self) -> bool {
+        self.half == 1.0 / FIRST as f64
+    }
+
+    /// The cells of the second level that it covers or is part of.
+    fn parts(&self) -> Range<usize> {
+        self.part..self.part + if self.is_first() { 4 } else { 1 }
     }
 
     fn face(&self) -> usize {
-        self.root / (FIRST * FIRST)
+        self.part / (4 * FIRST * FIRST)
     }
 }
 
@@ -146,17 +160,23 @@ fn search<T: Lane + Precision, const N: usize>(
     minima.extend(others);
     let mut looked_at = 0;
     let centres = Face::ALL.map(|face| face.local(&pair.centre));
-    let mut open: Vec<Cell> = Vec::with_capacity(2 * ROOTS);
-    for (root, bound) in proven.bounds.iter_mut().enumerate() {
-        if f64::from(*bound) > known.expansion.value + ALIKE {
+    let mut open: Vec<Cell> = Vec::with_capacity(128);
+    let mut start = |cell: Cell, bounds: &mut [f32]| {
+        let seen = faces(&cell, &centres);
+        bounds.fill(if seen { f32::INFINITY } else { f32::NEG_INFINITY });
+        open.extend(seen.then_some(cell));
+    };
+    for (number, bounds) in proven.bounds.chunks_exact_mut(4).enumerate() {
+        let cell = Cell::first(number);
+        let due = |bound: f32| f64::from(bound) <= known.expansion.value + ALIKE;
+        if bounds.iter().all(|bound| due(*bound)) {
+            start(cell, bounds);
             continue;
         }
-        let cell = Cell::first(root);
-        if faces(&cell, &centres) {
-            *bound = f32::INFINITY;
-            open.push(cell);
-        } else {
-            *bound = f32::NEG_INFINITY;
+        for (quarter, bound) in cell.quarters().into_iter().zip(bounds) {
+            if due(*bound) {
+                start(quarter, slice::from_mut(bound));
+            }
         }
     }
     while let Some(last) = open.last() {
@@ -186,19 +206,20 @@ fn search<T: Lane + Precision, const N: usize>(
                 }
             }
             let far = bound < found.minimum.expansion.value - tolerance;
-            let all = &mut proven.bounds[cell.root];
             if looked_at < most && (far || hopeful && !small) {
                 for quarter in cell.quarters() {
                     if faces(&quarter, &centres) {
                         open.push(quarter);
                     } else {
                         // not looked at, and may be wanted once B has moved
-                        *all = f32::NEG_INFINITY;
+                        proven.bounds[quarter.part] = f32::NEG_INFINITY;
                     }
                 }
             } else {
                 found.bound = found.bound.min(bound);
-                *all = all.min(own as f32);
+                for proven in &mut proven.bounds[cell.parts()] {
+                    *proven = proven.min(own as f32);
+                }
             }
         }
     }

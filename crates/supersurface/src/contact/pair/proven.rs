@@ -3,10 +3,10 @@
 //! A body's points move by no more than its centre does and its turn times its reach, and so does `φ` at any direction:
 //! a bound of `φ` over a cell, less that, still holds.
 
-use super::cells::ROOTS;
+use super::cells::PARTS;
 use super::difference::{Difference, Triple, difference, dot};
 
-/// Bounds of `φ` from below over the cells of the first level, in the pair's size.
+/// Bounds of `φ` from below over the cells of the second level, in the pair's size.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proven {
     semi_axes: [Triple; 2],
@@ -15,7 +15,7 @@ pub(super) struct Proven {
     turn: [Triple; 3],
     centre: Triple,
     /// Minus infinity where nothing is known.
-    pub(super) bounds: [f32; ROOTS],
+    pub(super) bounds: [f32; PARTS],
     /// Values and normals of the minima, or bounds of the values from below.
     pub(super) minima: [(f64, Triple); REMEMBERED],
 }
@@ -34,7 +34,7 @@ impl Default for Proven {
             size: f64::NAN,
             turn: [[f64::NAN; 3]; 3],
             centre: [f64::NAN; 3],
-            bounds: [f32::NEG_INFINITY; ROOTS],
+            bounds: [f32::NEG_INFINITY; PARTS],
             minima: [NONE; REMEMBERED],
         }
     }
@@ -50,7 +50,7 @@ impl Proven {
             self.bounds.iter_mut().for_each(|bound| *bound -= lost as f32 + 1e-6);
             self.minima.iter_mut().for_each(|(value, _)| *value -= lost);
         } else {
-            self.bounds = [f32::NEG_INFINITY; ROOTS];
+            self.bounds = [f32::NEG_INFINITY; PARTS];
             self.minima = [NONE; REMEMBERED];
             (self.semi_axes, self.dual, self.size) = (to.semi_axes, to.dual, to.size);
         }
@@ -92,8 +92,7 @@ mod tests {
             let axes = [draw(0.01, 0.1), draw(0.01, 0.1), draw(0.01, 0.1)];
             let b = convex(axes, [draw(0.05, 1.9), draw(0.05, 1.9)]);
             let mut pose = |step: f64| {
-                let mut vector =
-                    |s: f64| Vector::new(draw(-s, s), draw(-s, s), draw(-s, s));
+                let mut vector = |s: f64| Vector::new(draw(-s, s), draw(-s, s), draw(-s, s));
                 Pose::new(vector(0.01 * step), vector(step))
             };
             let (first, by) = (pose(2.0), pose(0.1));
@@ -104,7 +103,7 @@ mod tests {
             let (before, after) = (at(first), at(first * by));
             let mut proven = Proven::default();
             proven.carry(&before);
-            proven.bounds = [0.0; ROOTS];
+            proven.bounds = [0.0; PARTS];
             proven.carry(&after);
             let lost = -f64::from(proven.bounds[0]);
             let mut most = 0.0f64;

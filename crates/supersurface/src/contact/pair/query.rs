@@ -39,11 +39,11 @@ pub struct Contact {
 /// What a query remembers for the next one of the same two bodies a moment later.
 ///
 /// It changes how long the next query takes, and what it says by rounding only.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct WarmStart {
     /// The normal in A's frame.
     normal: Option<Triple>,
-    proven: Proven,
+    proven: Option<Box<Proven>>,
 }
 
 /// Widest bounds of the depth, in the pair's size, that [`pair`] is content with.
@@ -129,8 +129,9 @@ pub(super) fn answer(
     let minimum = settle(&pair, &guess);
     let mut answer = Answer { pair, minimum, least_depth: f64::NEG_INFINITY, unique: true };
     if minimum.expansion.value > 0.0 {
-        start.proven.carry(&answer.pair);
-        let least = least(&answer.pair, minimum, &mut start.proven, tolerance, most);
+        let proven = start.proven.get_or_insert_default();
+        proven.carry(&answer.pair);
+        let least = least(&answer.pair, minimum, proven, tolerance, most);
         answer.minimum = least.minimum;
         answer.least_depth = least.bound;
         answer.unique = least.unique;
