@@ -226,21 +226,30 @@ fn depths_are_those_of_the_exact_mode() {
 
 #[test]
 fn a_warm_start_changes_nothing_but_time() {
-    let mut random = Stream::new(74, 0);
-    for case in 0..400 {
-        let (bodies, _) = placed(&mut random, if case % 2 == 0 { 0.2 } else { -0.05 });
+    let mut others = 0;
+    // one start for all: what other bodies left in it is of no use, and does no harm
+    let mut start = WarmStart::default();
+    for seed in 0..200 {
+        let random = &mut Stream::new(31, seed);
+        let gap = random.between(-0.8, 0.3);
+        let (mut bodies, _) = placed(random, gap);
         let size = size(&bodies);
-        let mut start = WarmStart::default();
-        pair(&bodies[0], &bodies[1], &mut start);
-        let by = direction(&mut random).into_inner() * (1e-3 * size);
-        let next = moved(&bodies[1], by);
-        let warm = pair(&bodies[0], &next, &mut start);
-        let cold = pair(&bodies[0], &next, &mut WarmStart::default());
-        assert!(
-            (warm.distance - cold.distance).abs() < 1e-9 * size,
-            "{bodies:?} {warm:?} {cold:?}"
-        );
+        let step = 10f64.powf_in(random.between(-4.0, -1.0));
+        for _ in 0..10 {
+            let turn = UnitQuaternion::from_scaled_axis(direction(random).into_inner() * step);
+            let place = bodies[1].pose().translation.vector
+                + direction(random).into_inner() * (step * size);
+            let pose = Pose::from_parts(place.into(), turn * bodies[1].pose().rotation);
+            bodies[1] = Posed::new(*bodies[1].shape(), pose).unwrap();
+            let warm = pair(&bodies[0], &bodies[1], &mut start);
+            let cold = pair(&bodies[0], &bodies[1], &mut WarmStart::default());
+            check_consistent(&bodies, &warm, size);
+            assert!(warm.bounds[0] <= cold.distance && cold.distance <= warm.bounds[1]);
+            // of minima that are nearly as good either may be found
+            others += usize::from((warm.distance - cold.distance).abs() > 1e-9 * size);
+        }
     }
+    assert!(others <= 4, "{others} of 2,000");
 }
 
 #[test]
