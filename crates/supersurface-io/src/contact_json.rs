@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use supersurface::contact::{Contact, Convex};
 use supersurface::shape::{Posed, Superellipsoid};
-use supersurface::{Pose, Vector};
+use supersurface::{Point, Pose, Vector};
 
 use crate::error::{Fault, ReadError, printable};
 use crate::read::{BOM, load, shown_name};
@@ -207,11 +207,12 @@ struct File<'a> {
     bounds: [f64; 2],
     normal: [f64; 3],
     witnesses: [[f64; 3]; 2],
+    common_point: Option<[f64; 3]>,
 }
 
 /// The JSON text of one contact, over many lines: format `supersurface-contact`, version 1. The sources are the names of
-/// A and B.
-pub fn contact_json(contact: &Contact, sources: [&str; 2]) -> String {
+/// A and B; the common point is in both, where there is one.
+pub fn contact_json(contact: &Contact, common: Option<Point>, sources: [&str; 2]) -> String {
     let file = File {
         format: "supersurface-contact",
         version: 1,
@@ -220,6 +221,7 @@ pub fn contact_json(contact: &Contact, sources: [&str; 2]) -> String {
         bounds: contact.bounds,
         normal: contact.normal.into_inner().into(),
         witnesses: contact.witnesses.map(Into::into),
+        common_point: common.map(Into::into),
     };
     serde_json::to_string_pretty(&file).unwrap_or_default()
 }

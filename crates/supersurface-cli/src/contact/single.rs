@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use supersurface::contact::common_point;
 use supersurface_io::{contact_json, write_png};
 
 use super::args::ContactArgs;
@@ -33,7 +34,10 @@ pub(super) fn run(args: &ContactArgs, given: [&str; 2], query: &Query) -> Result
         write_png(png, [image.width, image.height], &image.pixels).map_err(Failure::output)
     });
     let told = print(&match args.json {
-        true => contact_json(&contact, [first, second]) + "\n",
+        true => {
+            let common = common_point(&bodies[0], &bodies[1], &contact);
+            contact_json(&contact, common, [first, second]) + "\n"
+        }
         false => text([first, second], &bodies, &contact),
     });
     match (drawn, told) {

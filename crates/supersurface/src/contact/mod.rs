@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | two convex bodies | [`pair`], [`intersect`], [`certify`] | signed distance, normal, witness points, and bounds of the distance |
 //! | the same in an optimisation | [`differentiate`] | derivatives by both poses and shapes |
+//! | a point of both | [`common_point`] | the proof of an overlap |
 //! | many convex bodies | [`contacts`] | all pairs within a distance |
 //! | a ring and a convex body | [`ring`] | the distance, also through the hole |
 //! | a half space, a ball, a point | [`half_space`], [`sphere`] | the same for toroids |
@@ -25,7 +26,8 @@ pub use elastic::{
 };
 pub use many::{Neighbours, contacts};
 pub use pair::{
-    BodyDerivative, Contact, Convex, WarmStart, certify, differentiate, intersect, pair,
+    BodyDerivative, Contact, Convex, WarmStart, certify, common_point, differentiate, intersect,
+    pair,
 };
 pub use ring::ring;
 pub use simple::{half_space, sphere};

@@ -6,7 +6,8 @@ use std::env;
 use std::f64::consts::PI;
 
 use supersurface::contact::{
-    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair, ring, sphere,
+    Contact, Convex, WarmStart, certify, common_point, contacts, differentiate, intersect, pair,
+    ring, sphere,
 };
 use supersurface::measure::ClosestFinder;
 use supersurface::mesh::{Spacing, supertoroid_grid};
@@ -59,6 +60,11 @@ fn size(bodies: &[Posed<Convex>; 2]) -> f64 {
 
 fn moved(body: &Posed<Convex>, by: Vector) -> Posed<Convex> {
     body.moved(&Pose::translation(by.x, by.y, by.z))
+}
+
+/// The larger gauge of a point.
+fn gauge(bodies: &[Posed<Convex>; 2], p: &Point) -> f64 {
+    bodies.iter().map(|b| b.shape().shape().gauge(&b.to_local(p))).fold(0.0, f64::max)
 }
 
 /// Two bodies whose faces along a random normal are `gap` sizes apart: for a positive gap, their distance.
@@ -250,6 +256,20 @@ fn a_warm_start_changes_nothing_but_time() {
         }
     }
     assert!(others <= 4, "{others} of 2,000");
+}
+
+#[test]
+fn bodies_that_overlap_have_a_common_point() {
+    for seed in 0..1000 {
+        let random = &mut Stream::new(32, seed);
+        let gap = random.between(-0.5, 0.2);
+        let gap = if seed % 3 == 0 { gap.signum() * 1e-6 } else { gap };
+        let (bodies, _) = placed(random, gap);
+        let found = pair(&bodies[0], &bodies[1], &mut WarmStart::default());
+        let point = common_point(&bodies[0], &bodies[1], &found);
+        assert_eq!(point.is_some(), found.distance < 0.0, "{bodies:?} {found:?}");
+        assert!(point.is_none_or(|p| gauge(&bodies, &p) <= 1.0));
+    }
 }
 
 #[test]
