@@ -65,7 +65,9 @@ fn json_has_the_fields_of_a_contact() {
     assert!((points[0] - 0.02).abs() < 1e-9 && (points[1] - 0.01).abs() < 1e-9, "{told}");
     let common = told["common_point"][0].as_f64().unwrap();
     assert!((0.01..=0.02).contains(&common), "{told}");
-    assert!(run(&["contact", &boxed(0.0), &boxed(0.05), "--json"]).json()["common_point"].is_null());
+    assert!(
+        run(&["contact", &boxed(0.0), &boxed(0.05), "--json"]).json()["common_point"].is_null()
+    );
     let words = ["contact", &boxed(0.0), &boxed(0.03), "--json", "--certify", "1e-9"];
     assert!(width(&run(&words).ended(0).json()) < 1.1e-9);
     assert!(include_str!("../../../../docs/contact.md").contains("`witnesses`"));

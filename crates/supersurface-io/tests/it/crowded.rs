@@ -94,8 +94,8 @@ fn crowd(seed: u64) -> (PointCloud, Vec<u32>, Vec<f64>) {
         stream.between(0.0, std::f64::consts::TAU),
     );
     let reach = |body: &Body| {
-        let half = body.surface.shape().half_extents();
-        let at = body.surface.pose().translation.vector - target.coords;
+        let half = body.solids()[0].shape().half_extents();
+        let at = body.pose.translation.vector - target.coords;
         at.norm() + half.iter().map(|h| h * h).sum::<f64>().sqrt()
     };
     let reach = scene.bodies.iter().map(reach).fold(0.0, f64::max);

@@ -9,7 +9,8 @@ use nalgebra::{Translation3, UnitQuaternion};
 
 use crate::mesh::{MarchOptions, Resolution, march};
 use crate::numeric::random::Stream;
-use crate::scene::layout::{Body, Scene, SceneError, TRIALS, footprint, rests};
+use crate::scene::Body;
+use crate::scene::layout::{Scene, SceneError, TRIALS, footprint, rests};
 use crate::shape::{Implicit, Posed, SupportMap};
 use crate::surface::Surface;
 use crate::{Point, Pose, Vector};
@@ -69,11 +70,9 @@ pub fn crowded(
         placed.push(solid.at(found.ok_or_else(none)?)?);
     }
     let mut scene = Scene::empty(half_size);
-    scene.bodies = shapes
-        .iter()
-        .zip(placed)
-        .map(|((name, _), solid)| Body { name: name.clone(), surface: solid.surface })
-        .collect();
+    for ((name, shape), solid) in shapes.iter().zip(placed) {
+        scene.bodies.push(Body::single(name, *shape, *solid.surface.pose())?);
+    }
     Ok(scene)
 }
 

@@ -6,7 +6,8 @@
 
 use crate::camera::InvalidCamera;
 use crate::numeric::random::Stream;
-use crate::shape::{InvalidShape, Plane, Posed};
+use crate::scene::{Board, Body};
+use crate::shape::{InvalidShape, Plane};
 use crate::surface::Surface;
 use crate::{Point, Pose, Vector};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -39,20 +40,13 @@ pub enum SceneError {
     Camera(#[from] InvalidCamera),
 }
 
-/// A body of a scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Body {
-    /// What a person would call it.
-    pub name: String,
-    /// Shape and pose in the world, in metres.
-    pub surface: Posed<Surface>,
-}
-
 /// A table with bodies on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The bodies, in the order of their labels 1, 2, 3, …
     pub bodies: Vec<Body>,
+    /// Fixed boards that stand on the table; they have no label.
+    pub boards: Vec<Board>,
     /// The table's top.
     pub support: Plane,
     /// Half edge lengths of the top along x and y of the world, in metres, about its origin.
@@ -63,7 +57,7 @@ impl Scene {
     /// An empty table with its top at z = 0. `half_size` in metres.
     pub fn empty(half_size: [f64; 2]) -> Self {
         let support = Plane::through(&Point::origin(), Vector::z_axis());
-        Self { bodies: Vec::new(), support, half_size }
+        Self { bodies: Vec::new(), boards: Vec::new(), support, half_size }
     }
 
     /// Puts a body down with its centre over (x, y) in metres, resting with `rest` (see [`rests`])
@@ -79,8 +73,7 @@ impl Scene {
         let rotation = UnitQuaternion::from_axis_angle(&Vector::z_axis(), yaw) * rest;
         let height = footprint(&shape, &rest).z;
         let pose = Pose::from_parts(Translation3::new(x, y, height), rotation);
-        let surface = Posed::new(shape, pose)?;
-        self.bodies.push(Body { name: name.to_owned(), surface });
+        self.bodies.push(Body::single(name, shape, pose)?);
         Ok(())
     }
 }
@@ -174,10 +167,10 @@ mod tests {
         for seed in 0..50 {
             let scene = place(&shapes(), [0.3, 0.25], seed).unwrap();
             for (i, body) in scene.bodies.iter().enumerate() {
-                let lowest = body.surface.support_point(&-Vector::z());
+                let lowest = body.solids()[0].support_point(&-Vector::z());
                 assert!(scene.support.height(&lowest).abs() < 1e-9, "{}: {lowest}", body.name);
                 for other in &scene.bodies[..i] {
-                    let [a, b] = [&body.surface, &other.surface].map(|s| s.pose().translation);
+                    let [a, b] = [body, other].map(|b| b.pose.translation);
                     assert!((a.vector - b.vector).norm() > 0.05);
                 }
             }

@@ -1,12 +1,10 @@
 //! What a depth camera sees of a scene: a ray a pixel against the bodies and the table's top.
 
 use crate::camera::{Camera, DepthImage};
-use crate::measure::first_hit;
 use crate::numeric::random::Stream;
+use crate::scene::rays::{Rays, Seen};
 use crate::scene::{DepthNoise, Scene};
-use crate::shape::{Implicit, Posed, Ray};
-use crate::surface::Surface;
-use crate::{Direction, Point, Pose, Vector};
+use crate::{Point, Pose, Vector};
 use nalgebra::UnitQuaternion;
 
 /// A jump of depth between neighbours, relative to the depth, that counts as an edge.
@@ -20,6 +18,9 @@ pub struct Look {
     pub depth: DepthImage,
     /// For each pixel: k for the body `bodies[k - 1]`, 0 for the table and where there is no reading.
     pub labels: Vec<u32>,
+    /// Outward unit normal in the optical frame of what each pixel's ray meets, without noise; zero where it meets
+    /// nothing.
+    pub normals: Vec<[f32; 3]>,
 }
 
 /// The pose of an optical frame at `eye` that looks at `target` with the world's z axis upright.
@@ -28,23 +29,6 @@ pub fn facing(eye: &Point, target: &Point) -> Pose {
     let rotation = UnitQuaternion::face_towards(&(target - eye), &-Vector::z());
     Pose::from_parts(eye.coords.into(), rotation)
 }
-
-/// A body as rays meet it: in its own frame, which its bounds fit tightly.
-struct Target<'a> {
-    body: &'a Posed<Surface>,
-    centre: Point,
-    radius: f64,
-}
-
-/// What the ray of a pixel meets.
-#[derive(Clone, Copy)]
-struct Seen {
-    depth: f64,
-    incidence: f64,
-    label: u32,
-}
-
-const NOTHING: Seen = Seen { depth: f64::INFINITY, incidence: 1.0, label: 0 };
 
 /// The depth image and labels of a scene for a camera whose optical frame stands at `camera_pose` in
 /// the world. Each pixel has its own random stream, so that the image depends on the seed alone.
@@ -56,16 +40,15 @@ pub fn look(
     seed: u64,
 ) -> Look {
     let [width, height] = camera.size();
-    let targets: Vec<Target<'_>> = scene.bodies.iter().map(|b| Target::new(&b.surface)).collect();
+    let rays = Rays::new(scene, camera_pose);
     let pixel = |i: usize| {
         let mut stream = Stream::new(seed, i as u64);
         let mut aim = |at: usize| at as f64 + noise.lateral * stream.normal();
-        let along = camera.unproject(aim(i % width), aim(i / width));
-        see(scene, &targets, camera_pose, along)
+        rays.see(camera.unproject(aim(i % width), aim(i / width)))
     };
     let seen = gather(width * height, pixel);
     let reading = |i: usize| {
-        let Some(Seen { depth, incidence, label }) = seen.get(i).copied() else {
+        let Some(Seen { depth, incidence, label, .. }) = seen.get(i).copied() else {
             return (f32::NAN, 0);
         };
         if !depth.is_finite() {
@@ -83,7 +66,9 @@ pub fn look(
     };
     let (depth, labels) = gather(width * height, reading).into_iter().unzip();
     let depth = DepthImage::new([width, height], depth);
-    Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels }
+    let to_optical = camera_pose.rotation.inverse();
+    let normals = seen.iter().map(|s| (to_optical * s.normal).cast::<f32>().into()).collect();
+    Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels, normals }
 }
 
 /// The error of a pixel that is the mean of its square's, scaled to a standard deviation of 1. The pixels of a square have
@@ -100,25 +85,24 @@ fn patch_error(i: usize, width: usize, side: usize, seed: u64) -> f64 {
 /// for a body outside the image.
 pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64> {
     let [width, height] = camera.size();
-    let targets: Vec<Target<'_>> = scene.bodies.iter().map(|b| Target::new(&b.surface)).collect();
+    let rays = Rays::new(scene, camera_pose);
     // pixels in which each body is seen, and in which it would be
     let row = |v: usize| {
-        let mut counts = vec![[0u32; 2]; targets.len()];
+        let mut counts = vec![[0u32; 2]; scene.bodies.len()];
         for u in 0..width {
             let along = camera.unproject(u as f64, v as f64);
-            let seen = see(scene, &targets, camera_pose, along);
-            let ray = ray_along(camera_pose, along);
-            for ((target, count), label) in targets.iter().zip(&mut counts).zip(1..) {
+            let seen = rays.see(along);
+            for (count, label) in counts.iter_mut().zip(1..) {
                 let shown = seen.label == label;
                 count[0] += u32::from(shown);
-                count[1] += u32::from(shown || target.meet(&ray, f64::INFINITY).is_some());
+                count[1] += u32::from(shown || rays.meets(along, label));
             }
         }
         counts
     };
     let rows = gather_by(1, height, row);
     let sum = |k: usize, of: usize| rows.iter().map(|row| f64::from(row[k][of])).sum::<f64>();
-    (0..targets.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
+    (0..scene.bodies.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
 }
 
 /// All values of `f` in order, on all cores.
@@ -144,61 +128,6 @@ fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
 #[cfg(not(feature = "parallel"))]
 fn gather_by<T>(_: usize, n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
     gather(n, f)
-}
-
-impl<'a> Target<'a> {
-    fn new(body: &'a Posed<Surface>) -> Self {
-        let [low, high] = body.shape().bounds();
-        let centre = body.pose() * nalgebra::center(&low, &high);
-        Self { body, centre, radius: 0.5 * (high - low).norm() }
-    }
-
-    /// Distance along the ray and cosine of incidence, when nearer than `max`.
-    fn meet(&self, ray: &Ray, max: f64) -> Option<(f64, f64)> {
-        let to = self.centre - ray.origin;
-        let middle = to.dot(&ray.direction);
-        let aside = to.norm_squared() - middle * middle;
-        if aside > self.radius * self.radius || middle < -self.radius {
-            return None;
-        }
-        let pose = self.body.pose();
-        let local = Ray {
-            origin: pose.inverse_transform_point(&ray.origin),
-            direction: pose.inverse_transform_unit_vector(&ray.direction),
-        };
-        let hit = first_hit(self.body.shape(), &local, max)?;
-        Some((hit.distance, -hit.normal.dot(&local.direction)))
-    }
-}
-
-/// The ray of a pixel in the world; `along` is the point at depth 1 that it passes, in the optical frame.
-fn ray_along(pose: &Pose, along: Vector) -> Ray {
-    Ray {
-        origin: Point::from(pose.translation.vector),
-        direction: Direction::new_normalize(pose.rotation * along),
-    }
-}
-
-/// What a ray meets first; `along` is the point at depth 1 that it passes, in the optical frame.
-fn see(scene: &Scene, targets: &[Target<'_>], pose: &Pose, along: Vector) -> Seen {
-    let length = along.norm();
-    let ray = ray_along(pose, along);
-    let mut nearest = f64::INFINITY;
-    let mut seen = NOTHING;
-    let rise = scene.support.normal().dot(&ray.direction);
-    let t = -scene.support.height(&ray.origin) / rise;
-    let foot = ray.at(t);
-    if t > 0.0 && foot.x.abs() <= scene.half_size[0] && foot.y.abs() <= scene.half_size[1] {
-        nearest = t;
-        seen = Seen { depth: t / length, incidence: rise.abs(), label: 0 };
-    }
-    for (target, label) in targets.iter().zip(1..) {
-        if let Some((t, incidence)) = target.meet(&ray, nearest) {
-            nearest = t;
-            seen = Seen { depth: t / length, incidence: incidence.abs(), label };
-        }
-    }
-    seen
 }
 
 /// True when a neighbour is much nearer or farther.

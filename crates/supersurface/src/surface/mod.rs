@@ -6,7 +6,9 @@ mod solid;
 pub use solid::Solid;
 
 use crate::deform::{Bend, Deformed, Taper, Twist};
-use crate::shape::{Implicit, InvalidShape, Superellipsoid, Supertoroid, SupportMap};
+use crate::shape::{
+    Implicit, InvalidShape, Mass, MassProperties, Superellipsoid, Supertoroid, SupportMap,
+};
 use crate::{Point, Vector};
 
 /// Any supersurface that the fit can recover.
@@ -156,6 +158,19 @@ impl Surface {
             Self::Twisted(s) => s,
             Self::Bent(s) => s,
             Self::TaperedBent(s) => s,
+        }
+    }
+}
+
+impl MassProperties for Surface {
+    fn mass_properties(&self, density: f64) -> Mass {
+        match self {
+            Self::Superellipsoid(s) => s.mass_properties(density),
+            Self::Supertoroid(s) => s.mass_properties(density),
+            Self::Tapered(s) => s.mass_properties(density),
+            Self::Twisted(s) => s.mass_properties(density),
+            Self::Bent(s) => s.mass_properties(density),
+            Self::TaperedBent(s) => s.mass_properties(density),
         }
     }
 }

@@ -43,7 +43,7 @@ fn without_noise_a_depth_is_the_distance_of_the_hit() {
         // the middle of what is seen of the body
         let pixels = (0..640 * 480).filter(|i| seen.labels[*i] == label);
         let i = pixels.min_by_key(|i| {
-            let centre = Point::from(body.surface.pose().translation.vector);
+            let centre = Point::from(body.pose.translation.vector);
             let [u, v] = d.camera.project(&d.camera_pose.inverse_transform_point(&centre)).unwrap();
             ((i % 640) as i64 - u as i64).abs() + ((i / 640) as i64 - v as i64).abs()
         });
@@ -53,7 +53,7 @@ fn without_noise_a_depth_is_the_distance_of_the_hit() {
             origin: Point::from(d.camera_pose.translation.vector),
             direction: d.camera_pose * along,
         };
-        let hit = first_hit(&body.surface, &ray, 2.0).unwrap();
+        let hit = first_hit(&body.solids()[0], &ray, 2.0).unwrap();
         let depth = f64::from(seen.depth.depth()[i]);
         assert!((depth - hit.distance * along.z).abs() < 1e-6, "{}", body.name);
     }
@@ -68,7 +68,7 @@ fn points_lie_on_what_their_labels_say() {
     for (p, label) in cloud.points.iter().zip(&seen.labels).filter(|(p, _)| p.x.is_finite()) {
         errors.push(match label {
             0 => d.scene.support.height(p).abs(),
-            k => d.scene.bodies[*k as usize - 1].surface.first_order_distance(p).abs(),
+            k => d.scene.bodies[*k as usize - 1].solids()[0].first_order_distance(p).abs(),
         });
     }
     errors.sort_by(f64::total_cmp);
