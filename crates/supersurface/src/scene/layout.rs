@@ -32,6 +32,12 @@ pub enum SceneError {
         /// Number of places that were tried.
         trials: usize,
     },
+    /// A layout for one body was asked for with several.
+    #[error("a single layout holds one body, not {bodies}: take another layout, or several scenes")]
+    NotSingle {
+        /// Number of bodies.
+        bodies: usize,
+    },
     /// A number of a body is out of range.
     #[error(transparent)]
     Shape(#[from] InvalidShape),
