@@ -6,6 +6,7 @@
 //! | camera intrinsics (JSON) | in | [`read_camera`] |
 //! | instance mask (PNG) | in | [`read_mask`] |
 //! | gripper (TOML) | in | [`read_gripper`] |
+//! | kinds of things (TOML) | in | [`read_things`] |
 //! | shape (JSON) | in | [`read_shape`] |
 //! | points (PCD, PLY, text) | out | [`write_points`] |
 //! | labels (NPY), picture (PNG), grasps and report (JSON) | out | [`write_labels`], [`write_png`], [`write_grasps`], [`report_json`] |
@@ -44,6 +45,7 @@ mod report_json;
 mod shape_json;
 mod surface_row;
 mod text;
+mod things;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
@@ -61,4 +63,5 @@ pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
 pub use shape_json::{Model, parse_shape, read_shape};
+pub use things::{BUILT_IN_THINGS, read_things};
 pub use write::{write_png, write_text};

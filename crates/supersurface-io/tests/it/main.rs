@@ -7,6 +7,7 @@ mod formats;
 mod grippers;
 mod odd_files;
 mod shapes;
+mod things;
 mod write;
 
 /// The folder of shared data, when the environment names it.
