@@ -47,14 +47,17 @@ pub fn first_hit(shape: &(impl Implicit + ?Sized), ray: &Ray, max: f64) -> Optio
         return None;
     }
     let along = Along { shape, ray };
-    let distance =
-        if shape.is_convex() { along.convex(near, far) } else { along.sampled(near, far) }?;
+    let distance = if shape.is_convex() {
+        along.convex(near, far)
+    } else {
+        along.sampled(near, far, INTERVALS)
+    }?;
     (distance <= max).then(|| along.hit(distance))
 }
 
 /// The part of the ray inside a box, a little widened so that its ends lie outside the solid; in a box without
 /// end the part up to `max`.
-fn clip([low, high]: &[Point; 2], ray: &Ray, max: f64) -> Option<[f64; 2]> {
+pub(super) fn clip([low, high]: &[Point; 2], ray: &Ray, max: f64) -> Option<[f64; 2]> {
     let margin = 1e-9 * (high - low).amax();
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
@@ -80,15 +83,15 @@ fn clip([low, high]: &[Point; 2], ray: &Ray, max: f64) -> Option<[f64; 2]> {
 }
 
 /// The gauge of a shape as a function of the distance along a ray.
-struct Along<'a, S: ?Sized> {
-    shape: &'a S,
-    ray: &'a Ray,
+pub(super) struct Along<'a, S: ?Sized> {
+    pub(super) shape: &'a S,
+    pub(super) ray: &'a Ray,
 }
 
 impl<S: Implicit + ?Sized> Along<'_, S> {
     /// `g(t) - 1`.
     #[inline]
-    fn value(&self, t: f64) -> f64 {
+    pub(super) fn value(&self, t: f64) -> f64 {
         self.shape.gauge(&self.ray.at(t)) - 1.0
     }
 
@@ -98,7 +101,7 @@ impl<S: Implicit + ?Sized> Along<'_, S> {
         self.shape.gradient(&self.ray.at(t)).dot(&self.ray.direction)
     }
 
-    fn hit(&self, distance: f64) -> Hit {
+    pub(super) fn hit(&self, distance: f64) -> Hit {
         let point = self.ray.at(distance);
         let gradient = self.shape.gradient(&point);
         // scaled first: the gradient of a body of 1e-200 m would overflow when squared
@@ -113,7 +116,7 @@ impl<S: Implicit + ?Sized> Along<'_, S> {
 
     /// Newton's method from outside: from the near end, or, when the ray starts inside, back from
     /// the far end.
-    fn convex(&self, near: f64, far: f64) -> Option<f64> {
+    pub(super) fn convex(&self, near: f64, far: f64) -> Option<f64> {
         let inside = self.value(near) <= 0.0;
         // sign of the slope on the side from which the root is approached
         let (mut t, side) = if inside { (far, 1.0) } else { (near, -1.0) };
@@ -138,12 +141,12 @@ impl<S: Implicit + ?Sized> Along<'_, S> {
     }
 
     /// The first change of sign between samples, or inside a dip between two of them.
-    fn sampled(&self, near: f64, far: f64) -> Option<f64> {
-        let step = (far - near) / INTERVALS as f64;
+    pub(super) fn sampled(&self, near: f64, far: f64, intervals: usize) -> Option<f64> {
+        let step = (far - near) / intervals as f64;
         let (mut a, mut value_a) = (near, self.value(near));
         let inside = value_a <= 0.0;
         let mut slope_a = if inside { 0.0 } else { self.slope(near) };
-        for i in 1..=INTERVALS {
+        for i in 1..=intervals {
             let b = near + step * i as f64;
             let value_b = self.value(b);
             if (value_b <= 0.0) != inside {

@@ -4,6 +4,8 @@
 //! result and `z/a3` with `p = 2/ε1` (FORMULAS §0.1). Evaluated through the larger of the two
 //! arguments it neither overflows nor underflows for any exponent in (0, 2.5].
 
+use super::lanes::Lane;
+
 /// The norm of a pair together with the share that each argument has in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighted {
@@ -59,6 +61,28 @@ pub fn weighted(u: f64, v: f64, p: f64) -> Weighted {
 #[inline]
 fn ratio_power(small: f64, large: f64, p: f64) -> f64 {
     super::powers::power(small / large, p)
+}
+
+/// Logarithm of the q-norm of two numbers given by their logarithms, and the share of each in its q-th power, for a block
+/// of pairs in a [`Job`](super::lanes::Job); `r` is `1/q`.
+#[inline(always)]
+pub(crate) fn norm_of_logs<const FUSED: bool, T: Lane, const N: usize>(
+    x: &[T; N],
+    y: &[T; N],
+    q: &[T; N],
+    r: &[T; N],
+) -> ([T; N], [[T; N]; 2]) {
+    let (mut norm, mut shares) = (*x, [*x, *y]);
+    for i in 0..N {
+        let (high, low) = (x[i].most(y[i]), x[i].least(y[i]));
+        let ratio = (q[i] * (low - high)).exp::<FUSED>();
+        let sum = T::of(1.0) + ratio;
+        norm[i] = sum.ln::<FUSED>().times_plus::<FUSED>(r[i], high);
+        let (large, small) = (T::of(1.0) / sum, ratio / sum);
+        shares[0][i] = if x[i] > y[i] { large } else { small };
+        shares[1][i] = if x[i] > y[i] { small } else { large };
+    }
+    (norm, shares)
 }
 
 /// The exponent of the dual norm: `1/p + 1/q = 1`, in terms of the shape exponent `ε = 2/p`

@@ -41,12 +41,18 @@ pub fn look(
 ) -> Look {
     let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
-    let pixel = |i: usize| {
-        let mut stream = Stream::new(seed, i as u64);
-        let mut aim = |at: usize| at as f64 + noise.lateral * stream.normal();
-        rays.see(camera.unproject(aim(i % width), aim(i / width)))
+    let row = |v: usize| {
+        let aim = |u: usize| {
+            if noise.lateral == 0.0 {
+                return camera.unproject(u as f64, v as f64);
+            }
+            let mut stream = Stream::new(seed, (v * width + u) as u64);
+            let mut aside = || noise.lateral * stream.normal();
+            camera.unproject(u as f64 + aside(), v as f64 + aside())
+        };
+        rays.see(&(0..width).map(aim).collect::<Vec<_>>())
     };
-    let seen = gather(width * height, pixel);
+    let seen: Vec<Seen> = gather_by(1, height, row).concat();
     let reading = |i: usize| {
         let Some(Seen { depth, incidence, label, .. }) = seen.get(i).copied() else {
             return (f32::NAN, 0);
@@ -66,8 +72,8 @@ pub fn look(
     };
     let (depth, labels) = gather(width * height, reading).into_iter().unzip();
     let depth = DepthImage::new([width, height], depth);
-    let to_optical = camera_pose.rotation.inverse();
-    let normals = seen.iter().map(|s| (to_optical * s.normal).cast::<f32>().into()).collect();
+    let to_optical = camera_pose.rotation.inverse().cast::<f32>();
+    let normals = seen.iter().map(|s| (to_optical * s.normal).into()).collect();
     Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels, normals }
 }
 
@@ -88,15 +94,11 @@ pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64
     let rays = Rays::new(scene, camera_pose);
     // pixels in which each body is seen, and in which it would be
     let row = |v: usize| {
-        let mut counts = vec![[0u32; 2]; scene.bodies.len()];
-        for u in 0..width {
-            let along = camera.unproject(u as f64, v as f64);
-            let seen = rays.see(along);
-            for (count, label) in counts.iter_mut().zip(1..) {
-                let shown = seen.label == label;
-                count[0] += u32::from(shown);
-                count[1] += u32::from(shown || rays.meets(along, label));
-            }
+        let along: Vec<Vector> = (0..width).map(|u| camera.unproject(u as f64, v as f64)).collect();
+        let alone = rays.alone(&along);
+        let mut counts: Vec<[u32; 2]> = alone.into_iter().map(|n| [0, n]).collect();
+        for seen in rays.see(&along).iter().filter(|s| s.label > 0) {
+            counts[seen.label as usize - 1][0] += 1;
         }
         counts
     };

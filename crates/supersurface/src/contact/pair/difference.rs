@@ -18,6 +18,7 @@
 
 use super::Convex;
 use crate::numeric::lanes::{Lane, fused};
+use crate::numeric::superellipse::norm_of_logs;
 use crate::shape::Posed;
 
 /// A vector as the kernels have it.
@@ -153,27 +154,6 @@ fn shares<const FUSED: bool, T: Lane, const N: usize>(
         support[i] = support[i].exp::<FUSED>();
     }
     Shares { support, inner, outer }
-}
-
-/// Logarithm of the q-norm of two numbers given by their logarithms, and the share of each in its q-th power.
-#[inline(always)]
-fn norm_of_logs<const FUSED: bool, T: Lane, const N: usize>(
-    x: &[T; N],
-    y: &[T; N],
-    q: &[T; N],
-    r: &[T; N],
-) -> ([T; N], [[T; N]; 2]) {
-    let (mut norm, mut shares) = (*x, [*x, *y]);
-    for i in 0..N {
-        let (high, low) = (x[i].most(y[i]), x[i].least(y[i]));
-        let ratio = (q[i] * (low - high)).exp::<FUSED>();
-        let sum = T::of(1.0) + ratio;
-        norm[i] = sum.ln::<FUSED>().times_plus::<FUSED>(r[i], high);
-        let (large, small) = (T::of(1.0) / sum, ratio / sum);
-        shares[0][i] = if x[i] > y[i] { large } else { small };
-        shares[1][i] = if x[i] > y[i] { small } else { large };
-    }
-    (norm, shares)
 }
 
 impl Difference {
