@@ -160,7 +160,8 @@ fn superellipse([a, b]: [f64; 2], exponent: f64) -> Vec<[f64; 2]> {
     let mut angles: Vec<f64> = (0..=4).map(|i| FRAC_PI_2 * f64::from(i) / 4.0).collect();
     while angles.len() <= MOST_SPANS {
         let spans = angles.windows(2).map(|w| (w[0], w[1]));
-        let farther = |x: &(f64, f64), y: &(f64, f64)| sagitta(x.0, x.1).total_cmp(&sagitta(y.0, y.1));
+        let farther =
+            |x: &(f64, f64), y: &(f64, f64)| sagitta(x.0, x.1).total_cmp(&sagitta(y.0, y.1));
         let Some((from, to)) = spans.max_by(farther) else { break };
         if sagitta(from, to) <= CHORD * a.max(b) {
             break;

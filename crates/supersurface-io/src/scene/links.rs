@@ -104,7 +104,8 @@ impl<'a> Prepared<'a> {
             scene.bodies.iter().map(|body| names.give(&body.name, "body")).collect();
         let mut bodies = Vec::with_capacity(ids.len());
         for (body, id) in scene.bodies.iter().zip(ids) {
-            let named = |e: String| failed(format!("body {}: {e}", printable(&format!("{:?}", body.name))));
+            let named =
+                |e: String| failed(format!("body {}: {e}", printable(&format!("{:?}", body.name))));
             checked(body).map_err(named)?;
             bodies.push(Tree::new(body, id, &mut names).map_err(named)?);
         }
@@ -117,6 +118,13 @@ impl<'a> Prepared<'a> {
             finite(pose).map_err(|e| failed(format!("{}: {e}", printable(name))))?;
         }
         Ok(Self { scene, extras, bodies, boxes, cameras, sites })
+    }
+}
+
+impl Prepared<'_> {
+    /// The parts of all bodies.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &LinkPart> {
+        self.bodies.iter().flat_map(|tree| &tree.links).flat_map(|link| &link.parts)
     }
 }
 
@@ -217,7 +225,8 @@ impl<'a> Tree<'a> {
             let mut mass: Option<Mass> = None;
             let mut link = Vec::new();
             for index in parts {
-                let (Some(part), Some(solid)) = (shape.parts().get(index), solids.get(index)) else {
+                let (Some(part), Some(solid)) = (shape.parts().get(index), solids.get(index))
+                else {
                     continue;
                 };
                 let solid = solid.moved(&to_link);
@@ -239,7 +248,11 @@ impl<'a> Tree<'a> {
                 (Some(_), Some(part)) => part.id.clone(),
                 _ => id.clone(),
             };
-            let mass = mass.unwrap_or(Mass { mass: 0.0, centre: Default::default(), inertia: Matrix3::zeros() });
+            let mass = mass.unwrap_or(Mass {
+                mass: 0.0,
+                centre: Default::default(),
+                inertia: Matrix3::zeros(),
+            });
             of_a_solid(&mass)?;
             links.push(Link { id: own, joint, origin, parts: link, mass });
         }

@@ -36,9 +36,12 @@ pub(super) fn add(prepared: &Prepared<'_>, files: &mut Files) {
     for tree in &prepared.bodies {
         world.push(body(tree, 0, &mut assets, files));
         for (i, a) in tree.links.iter().enumerate() {
-            excluded.extend(tree.links.iter().skip(i + 1).map(|b| {
-                Element::new("exclude").with("body1", &a.id).with("body2", &b.id)
-            }));
+            excluded.extend(
+                tree.links
+                    .iter()
+                    .skip(i + 1)
+                    .map(|b| Element::new("exclude").with("body1", &a.id).with("body2", &b.id)),
+            );
         }
     }
     world.extend(prepared.sites.iter().map(|(id, site)| {

@@ -18,6 +18,7 @@ mod links;
 mod mjcf;
 mod names;
 mod part_mesh;
+mod read_scene;
 mod scene_json;
 mod sdf;
 mod urdf;
@@ -37,7 +38,7 @@ use crate::error::WriteError;
 use crate::mesh_files;
 use crate::write::write_bytes;
 
-pub use scene_json::{SceneFile, parse_scene, read_scene};
+pub use read_scene::{SceneFile, parse_scene, read_scene};
 
 /// Acceleration of gravity against z, in m/s².
 pub const GRAVITY: f64 = 9.81;
