@@ -3,16 +3,15 @@
 //! A link's frame has the axes of its body's frame, at rest. The root's stands where the body's does, that of any other
 //! link at its joint's anchor. All formats are written from this.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use nalgebra::Matrix3;
-use supersurface::combine::JointKind;
+use nalgebra::{Matrix3, UnitQuaternion};
+use supersurface::combine::{Assembly, Joint, JointKind};
 use supersurface::mesh::Mesh;
 use supersurface::scene::{Body, Scene};
 use supersurface::shape::{Mass, MassProperties, Posed};
 use supersurface::surface::Surface;
-use supersurface::{Pose, Vector};
+use supersurface::{Point, Pose, Vector};
 
 use super::convex_pieces::convex_pieces;
 use super::names::Names;
@@ -68,6 +67,8 @@ pub(super) struct Ball {
 /// A part of a link.
 pub(super) struct LinkPart {
     pub(super) id: String,
+    /// Which of the body's parts it is.
+    pub(super) index: usize,
     /// In the link's frame.
     pub(super) solid: Posed<Surface>,
     /// In the part's own frame.
@@ -104,8 +105,7 @@ impl<'a> Prepared<'a> {
             scene.bodies.iter().map(|body| names.give(&body.name, "body")).collect();
         let mut bodies = Vec::with_capacity(ids.len());
         for (body, id) in scene.bodies.iter().zip(ids) {
-            let named =
-                |e: String| failed(format!("body {}: {e}", printable(&format!("{:?}", body.name))));
+            let named = |e: String| failed(format!("body {}: {e}", shown(&body.name)));
             checked(body).map_err(named)?;
             bodies.push(Tree::new(body, id, &mut names).map_err(named)?);
         }
@@ -115,7 +115,7 @@ impl<'a> Prepared<'a> {
         let sites: Vec<_> = extras.sites.iter().map(site).collect();
         let poses = extras.cameras.iter().map(|c| (&c.name, &c.pose));
         for (name, pose) in poses.chain(extras.sites.iter().map(|s| (&s.name, &s.pose))) {
-            finite(pose).map_err(|e| failed(format!("{}: {e}", printable(name))))?;
+            finite(pose).map_err(|e| failed(format!("{}: {e}", shown(name))))?;
         }
         Ok(Self { scene, extras, bodies, boxes, cameras, sites })
     }
@@ -131,12 +131,12 @@ impl Prepared<'_> {
 /// The table's top as a cuboid under its plane, and the boards.
 fn boxes(scene: &Scene, names: &mut Names) -> Result<Vec<FixedBox>, String> {
     let normal = scene.support.normal();
-    let turn = nalgebra::UnitQuaternion::rotation_between(&Vector::z(), &normal);
-    let top = scene.support.project(&supersurface::Point::origin());
+    let turn = UnitQuaternion::rotation_between(&Vector::z(), &normal);
+    let top = scene.support.project(&Point::origin());
     let middle = top - normal.into_inner() * TABLE;
-    // without a turn the normal points straight down
+    // where there is none the normal points straight down
     let turn = turn.unwrap_or_else(|| {
-        nalgebra::UnitQuaternion::from_axis_angle(&Vector::x_axis(), std::f64::consts::PI)
+        UnitQuaternion::from_axis_angle(&Vector::x_axis(), std::f64::consts::PI)
     });
     let [x, y] = scene.half_size;
     let mut boxes = vec![FixedBox {
@@ -151,7 +151,7 @@ fn boxes(scene: &Scene, names: &mut Names) -> Result<Vec<FixedBox>, String> {
     }));
     for (k, fixed) in boxes.iter().enumerate() {
         let name = match k.checked_sub(1).and_then(|k| scene.boards.get(k)) {
-            Some(board) => format!("board {}", printable(&format!("{:?}", board.name))),
+            Some(board) => format!("board {}", shown(&board.name)),
             None => "table".to_owned(),
         };
         finite(&fixed.pose).map_err(|e| format!("{name}: {e}"))?;
@@ -178,86 +178,80 @@ fn finite(pose: &Pose) -> Result<(), String> {
     }
 }
 
+/// The parts of a link to be, and the joint that carries it with its anchor in the body's frame.
+struct Group {
+    parts: Vec<usize>,
+    joint: Option<(Ball, Vector)>,
+}
+
+/// Parts that are fixed to each other, from the root outwards.
+fn groups(shape: &Assembly<Surface>) -> Vec<Group> {
+    let motions = shape.motions(&shape.rest_rotations());
+    let mut groups = vec![Group { parts: vec![shape.root()], joint: None }];
+    let mut waiting: Vec<&Joint> = shape.joints().iter().collect();
+    while !waiting.is_empty() {
+        let before = waiting.len();
+        waiting.retain(|joint| {
+            let parent = groups.iter().position(|g| g.parts.contains(&joint.parent()));
+            let Some(parent) = parent else { return true };
+            let [stiffness, damping] = match joint.kind() {
+                JointKind::Fixed => {
+                    groups[parent].parts.push(joint.child());
+                    return false;
+                }
+                JointKind::Spherical => [0.0; 2],
+                JointKind::Spring { stiffness, damping, .. } => [stiffness, damping],
+            };
+            let motion = motions.get(joint.parent()).copied().unwrap_or_default();
+            let anchor = (motion * joint.anchor()).coords;
+            let joint_of = (Ball { parent, stiffness, damping }, anchor);
+            groups.push(Group { parts: vec![joint.child()], joint: Some(joint_of) });
+            false
+        });
+        // the joints are a tree, so that each round reaches a part
+        if waiting.len() == before {
+            break;
+        }
+    }
+    groups
+}
+
 impl<'a> Tree<'a> {
     fn new(body: &'a Body, id: String, names: &mut Names) -> Result<Self, String> {
-        let shape = &body.shape;
-        let rest = shape.rest_rotations();
-        let (motions, solids) = (shape.motions(&rest), shape.bodies(&rest));
-        // each link: its parts, and the joint that carries it
-        let mut members = vec![vec![shape.root()]];
-        let mut joints = vec![None];
-        let mut done = BTreeSet::from([shape.root()]);
-        while done.len() < shape.parts().len() {
-            let before = done.len();
-            for joint in shape.joints() {
-                if !done.contains(&joint.parent()) || done.contains(&joint.child()) {
-                    continue;
-                }
-                let Some(parent) = members.iter().position(|m| m.contains(&joint.parent())) else {
-                    continue;
-                };
-                done.insert(joint.child());
-                let ball = |stiffness, damping| Ball { parent, stiffness, damping };
-                let ball = match joint.kind() {
-                    JointKind::Fixed => {
-                        members[parent].push(joint.child());
-                        continue;
-                    }
-                    JointKind::Spherical => ball(0.0, 0.0),
-                    JointKind::Spring { stiffness, damping, .. } => ball(stiffness, damping),
-                };
-                let motion = motions.get(joint.parent()).copied().unwrap_or_default();
-                joints.push(Some((ball, (motion * joint.anchor()).coords)));
-                members.push(vec![joint.child()]);
-            }
-            // an assembly's joints are a tree, so that each round reaches a part
-            if done.len() == before {
-                break;
-            }
-        }
+        let solids = body.shape.bodies(&body.shape.rest_rotations());
+        let parts: Vec<_> = body.shape.parts().iter().zip(&solids).collect();
         let mut links = Vec::new();
-        for (parts, joint) in members.into_iter().zip(joints) {
-            let (joint, origin) = match joint {
-                Some((ball, origin)) => (Some(ball), origin),
-                None => (None, Vector::zeros()),
-            };
-            let to_link = Pose::from_parts((-origin).into(), Default::default());
-            let mut mass: Option<Mass> = None;
-            let mut link = Vec::new();
-            for index in parts {
-                let (Some(part), Some(solid)) = (shape.parts().get(index), solids.get(index))
-                else {
-                    continue;
-                };
+        for Group { parts: members, joint } in groups(&body.shape) {
+            let origin = joint.as_ref().map_or_else(Vector::zeros, |(_, anchor)| *anchor);
+            let to_link = Pose::from_parts((-origin).into(), UnitQuaternion::identity());
+            let mut mass = Mass { mass: 0.0, centre: Point::origin(), inertia: Matrix3::zeros() };
+            let mut held = Vec::new();
+            for index in members {
+                let Some((part, solid)) = parts.get(index) else { continue };
                 let solid = solid.moved(&to_link);
                 let own = solid.shape().mass_properties(part.density()).moved(solid.pose());
-                mass = Some(mass.map_or(own, |m| m.joined(&own)));
-                let named = |e: &dyn ToString| {
-                    format!("part {}: {}", printable(&format!("{:?}", part.name())), e.to_string())
-                };
-                let mesh = part_mesh(solid.shape()).map_err(|e| named(&e))?;
-                let alone = shape.parts().len() == 1;
-                let part_id = match alone {
-                    true => id.clone(),
-                    false => names.give(&format!("{id}_{}", part.name()), "part"),
+                mass = mass.joined(&own);
+                let mesh = part_mesh(solid.shape())
+                    .map_err(|e| format!("part {}: {e}", shown(part.name())))?;
+                let part_id = match parts.len() {
+                    1 => id.clone(),
+                    _ => names.give(&format!("{id}_{}", part.name()), "part"),
                 };
                 let pieces = convex_pieces(solid.shape());
-                link.push(LinkPart { id: part_id, solid, mesh, pieces });
+                held.push(LinkPart { id: part_id, index, solid, mesh, pieces });
             }
-            let own = match (&joint, link.first()) {
-                (Some(_), Some(part)) => part.id.clone(),
-                _ => id.clone(),
-            };
-            let mass = mass.unwrap_or(Mass {
-                mass: 0.0,
-                centre: Default::default(),
-                inertia: Matrix3::zeros(),
-            });
             of_a_solid(&mass)?;
-            links.push(Link { id: own, joint, origin, parts: link, mass });
+            let own = held.first().filter(|_| joint.is_some()).map_or(&id, |part| &part.id);
+            let (id, joint) = (own.clone(), joint.map(|(ball, _)| ball));
+            links.push(Link { id, joint, origin, parts: held, mass });
         }
         Ok(Self { id, body, links })
     }
+}
+
+/// A name in quotes, fit for a message.
+fn shown(name: &str) -> String {
+    printable(&format!("{name:?}"))
 }
 
 /// Checks what simulators do not: a mass, and an inertia whose principal moments are positive and keep the triangle

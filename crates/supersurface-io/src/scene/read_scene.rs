@@ -188,6 +188,8 @@ fn body(value: Value, at: &str) -> Result<Body, Fault> {
 #[serde(deny_unknown_fields)]
 struct PartRow {
     name: String,
+    #[serde(rename = "id", default)]
+    _id: IgnoredAny,
     density: f64,
     #[serde(rename = "mass", default)]
     _mass: IgnoredAny,

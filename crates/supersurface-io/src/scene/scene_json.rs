@@ -4,11 +4,10 @@
 
 use serde::Serialize;
 use supersurface::combine::{Joint, JointKind, Part};
-use supersurface::scene::Body;
 use supersurface::shape::{Mass, MassProperties};
 use supersurface::surface::Surface;
 
-use super::links::Prepared;
+use super::links::{LinkPart, Prepared, Tree};
 use super::{GRAVITY, SceneCamera, Touch};
 use crate::surface_row::{PoseRow, SurfaceRow};
 
@@ -28,7 +27,7 @@ pub(super) fn text(prepared: &Prepared<'_>) -> String {
             offset: scene.support.offset(),
             half_size: scene.half_size,
         },
-        bodies: prepared.bodies.iter().map(|tree| BodyRow::new(&tree.id, tree.body)).collect(),
+        bodies: prepared.bodies.iter().map(BodyRow::new).collect(),
         boards: (prepared.boxes.iter().skip(1).zip(&scene.boards))
             .map(|(fixed, board)| BoardRow {
                 name: &board.name,
@@ -90,15 +89,20 @@ struct BodyRow<'a> {
 }
 
 impl<'a> BodyRow<'a> {
-    fn new(id: &'a str, body: &'a Body) -> Self {
+    fn new(tree: &'a Tree<'_>) -> Self {
+        let body = tree.body;
+        let mut parts: Vec<&LinkPart> = tree.links.iter().flat_map(|link| &link.parts).collect();
+        parts.sort_by_key(|part| part.index);
         let volume = body.shape.parts().iter().map(|p| p.body().shape().volume()).sum();
         Self {
             name: &body.name,
-            id,
+            id: &tree.id,
             pose: PoseRow::new(&body.pose),
             friction: body.friction,
             mass: MassRow::new(&body.mass(), volume),
-            parts: body.shape.parts().iter().map(PartRow::new).collect(),
+            parts: (body.shape.parts().iter().zip(parts))
+                .map(|(part, LinkPart { id, .. })| PartRow::new(id, part))
+                .collect(),
             joints: body.shape.joints().iter().map(JointRow::new).collect(),
         }
     }
@@ -127,6 +131,7 @@ impl MassRow {
 #[derive(Serialize)]
 struct PartRow<'a> {
     name: &'a str,
+    id: &'a str,
     density: f64,
     #[serde(flatten)]
     mass: MassRow,
@@ -134,11 +139,12 @@ struct PartRow<'a> {
 }
 
 impl<'a> PartRow<'a> {
-    fn new(part: &'a Part<Surface>) -> Self {
+    fn new(id: &'a str, part: &'a Part<Surface>) -> Self {
         let (shape, pose) = (part.body().shape(), part.body().pose());
         let mass = shape.mass_properties(part.density()).moved(pose);
         Self {
             name: part.name(),
+            id,
             density: part.density(),
             mass: MassRow::new(&mass, shape.volume()),
             shape: SurfaceRow::new(part.body()),
