@@ -137,6 +137,16 @@ class Scene:
             worst = max(worst, *shares)
         return f"masses and inertias within {worst:.1e}"
 
+    def compare_views(self, found):
+        """Cameras by id, as (axes that look along -z with y up, place), against optical frames; sites likewise, as they are."""
+        flip = np.diag([1.0, -1.0, -1.0])
+        known = {c["id"]: (rotation(c["orientation_wxyz"]) @ flip, c["position"]) for c in self.file["cameras"]}
+        known |= {s["id"]: (rotation(s["orientation_wxyz"]), s["position"]) for s in self.file["sites"]}
+        for name, (turn, at) in known.items():
+            require(name in found, f"{name} is missing")
+            off = max(np.abs(found[name][0] - turn).max(), np.abs(found[name][1] - np.array(at)).max())
+            require(off < 1e-5, f"{name} stands elsewhere, by {off:.1e}")
+
     def rings(self):
         """Parts that have a hole: body, centre and axis in the world, tube radius, radius of the hole and of the ring."""
         for body in self.file["bodies"]:
@@ -160,6 +170,9 @@ def mujoco_loads(scene):
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     said = scene.compare(mujoco_masses(scene, model, data), world=True)
+    cameras = {model.cam(k).name: (data.cam_xmat[k].reshape(3, 3), data.cam_xpos[k]) for k in range(model.ncam)}
+    sites = {model.site(k).name: (data.site_xmat[k].reshape(3, 3), data.site_xpos[k]) for k in range(model.nsite)}
+    scene.compare_views(cameras | sites)
     overlap = max([-float(d) for d in data.contact.dist] + [0.0])
     require(overlap < OVERLAP, f"overlap at the start: {overlap * 1e3:.2f} mm")
     places, turns = data.xpos.copy(), data.xquat.copy()
@@ -254,6 +267,11 @@ def usd_loads(scene):
             matrix = np.array(places.GetLocalToWorldTransform(prim)).T
             local = mass.GetMassAttr().Get(), np.array(mass.GetCenterOfMassAttr().Get()), inertia
             links[body].append(in_world(*local, matrix[:3, :3], matrix[:3, 3]))
+    views = {}
+    for placed in scene.file["cameras"] + scene.file["sites"]:
+        matrix = np.array(places.GetLocalToWorldTransform(stage.GetPrimAtPath(f"/World/{placed['id']}"))).T
+        views[placed["id"]] = matrix[:3, :3], matrix[:3, 3]
+    scene.compare_views(views)
     require(numbers == len(scene.parts), f"{numbers} of {len(scene.parts)} parts have their numbers")
     said = scene.compare({name: joined(found) for name, found in links.items() if found}, world=True)
     return f"{said}; {meshes} closed meshes"
@@ -448,6 +466,11 @@ def glb_loads(scene):
     for name, part in scene.parts.items():
         require(name in loaded.geometry, f"{name} is missing")
         worst = max(worst, mesh_is_right(loaded.geometry[name], part, name))
+    views = {}
+    for placed in scene.file["cameras"] + scene.file["sites"]:
+        matrix = loaded.graph.get(placed["id"])[0]
+        views[placed["id"]] = up.T @ matrix[:3, :3], up.T @ matrix[:3, 3]
+    scene.compare_views(views)
     for name, body in scene.bodies.items():
         matrix = loaded.graph.get(name)[0]
         off = np.linalg.norm(matrix[:3, 3] - up @ np.array(body["position"]))

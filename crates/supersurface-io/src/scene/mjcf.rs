@@ -130,8 +130,7 @@ fn geoms(
         return vec![rough(whole.with("mass", 0))];
     }
     let mut geoms = vec![whole.with("class", "seen")];
-    for path in files.add_pieces(part) {
-        let file = path.trim_start_matches(MESHES).trim_start_matches('/').to_owned();
+    for file in files.add_pieces(part) {
         let name = file.trim_end_matches(".obj").to_owned();
         assets.push(Element::new("mesh").with("name", &name).with("file", file));
         geoms.push(rough(geom("mesh", &name).with("mesh", &name).with("class", "felt")));
@@ -157,10 +156,7 @@ fn mesh(part: &LinkPart, files: &mut Files) -> Element {
             let parameters = format!("{ring} {} {e1} {e2}", 1.0 / a4);
             built_in("supertorus", parameters, s.semi_axes().map(|a| a * a4))
         }
-        _ => {
-            let path = files.add_obj(&part.id, &part.mesh);
-            asset.with("file", path.trim_start_matches(MESHES).trim_start_matches('/'))
-        }
+        _ => asset.with("file", files.add_obj(&part.id, &part.mesh)),
     }
 }
 

@@ -196,12 +196,11 @@ impl Files {
         self.opened.push((name.into(), bytes.into()));
     }
 
-    /// An OBJ file, and its path from the folder.
+    /// Adds an OBJ file to the folder of meshes; its name there.
     fn add_obj(&mut self, id: &str, mesh: &Mesh) -> String {
         let name = format!("{id}.obj");
-        let path = format!("{MESHES}/{name}");
-        self.meshes.entry(name).or_insert_with(|| mesh_files::obj(mesh));
-        path
+        self.meshes.entry(name.clone()).or_insert_with(|| mesh_files::obj(mesh));
+        name
     }
 
     /// The OBJ files of the pieces of a part, or of the part where it has none.

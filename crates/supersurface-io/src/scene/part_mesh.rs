@@ -17,7 +17,7 @@ use super::gltf::vertex_normals;
 const DISTANCES: [f64; 4] = [1e-2, 5e-3, 2.5e-3, 1.25e-3];
 /// Most that a nudge may stretch, and move a vertex along its normal as a share of the least half extent.
 const NUDGE: f64 = 0.015;
-/// Most that the inertia may be off, as a share of its least diagonal entry.
+/// Most that an entry of the inertia may be off, as a share of the (mean) diagonal entries in its row and column.
 const INERTIA: f64 = 5e-4;
 /// Gauss-Newton steps, and their damping.
 const STEPS: usize = 8;
@@ -66,8 +66,9 @@ fn nudged(mesh: &Mesh, exact: &Mass, size: f64) -> Option<Mesh> {
         nudge -= normal.cholesky()?.solve(&(slopes.transpose() * now));
     }
     let mesh = weighed(&moved(&nudge)?, exact)?;
-    let off = (mesh.mass_properties(1.0).inertia - exact.inertia).amax();
-    let right = off <= INERTIA * exact.inertia.diagonal().min();
+    let off = mesh.mass_properties(1.0).inertia - exact.inertia;
+    let sizes = exact.inertia.diagonal().map(f64::sqrt);
+    let right = off.component_div(&(sizes * sizes.transpose())).amax() <= INERTIA;
     (nudge.amax() <= NUDGE && right).then_some(mesh)
 }
 

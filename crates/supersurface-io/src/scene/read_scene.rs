@@ -325,7 +325,7 @@ struct TouchRow {
 fn touch(value: Value, at: &str) -> Result<Touch, Fault> {
     let touch: TouchRow = row(value, at)?;
     let length = Vector::from(touch.normal).norm();
-    if !((length - 1.0).abs() <= 1e-3) {
+    if (length - 1.0).abs() > 1e-3 {
         let problem = format!("has the length {length}: a unit normal has 1");
         return Err(Fault::new(format!("{at}.normal"), problem));
     }

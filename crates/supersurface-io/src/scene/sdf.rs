@@ -9,7 +9,7 @@ use supersurface::{Pose, Vector};
 
 use super::links::{Link, LinkPart, Prepared, Tree};
 use super::xml::{Element, numbers};
-use super::{Files, GRAVITY};
+use super::{Files, GRAVITY, MESHES};
 
 pub(super) fn add(prepared: &Prepared<'_>, files: &mut Files) {
     let largest = prepared.bodies.iter().map(|b| b.body.friction).fold(1.0, f64::max);
@@ -102,11 +102,12 @@ fn shapes(part: &LinkPart, friction: f64, files: &mut Files) -> Vec<Element> {
             rough(named("collision", &part.id, ellipsoid())),
         ];
     }
-    let mesh = |path: &str| Element::new("mesh").child(Element::text("uri", path));
+    let mesh =
+        |file: &str| Element::new("mesh").child(Element::text("uri", format!("{MESHES}/{file}")));
     let mut all = vec![named("visual", &part.id, mesh(&files.add_obj(&part.id, &part.mesh)))];
-    for (k, path) in files.add_pieces(part).iter().enumerate() {
+    for (k, file) in files.add_pieces(part).iter().enumerate() {
         // Drake would take the mesh itself, and only its vertices, otherwise
-        let convex = mesh(path).child(Element::new("drake:declare_convex"));
+        let convex = mesh(file).child(Element::new("drake:declare_convex"));
         all.push(rough(named("collision", &format!("{}_contact_{k}", part.id), convex)));
     }
     all

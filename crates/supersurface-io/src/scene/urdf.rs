@@ -8,9 +8,9 @@ use nalgebra::{Matrix3, UnitQuaternion};
 use supersurface::shape::Mass;
 use supersurface::{Pose, Vector};
 
-use super::Files;
 use super::links::{FixedBox, Link, Prepared, Tree};
 use super::xml::{Element, numbers};
+use super::{Files, MESHES};
 
 /// Mass and inertia of the links within a ball joint, as a share of the link that it carries.
 const LIGHT: f64 = 1e-4;
@@ -77,16 +77,16 @@ fn links(tree: &Tree<'_>, files: &mut Files) -> Vec<Element> {
     for link in &tree.links {
         let mut element = Element::new("link").with("name", &link.id).child(inertial(&link.mass));
         for part in &link.parts {
-            let shape = |kind, path: &str| {
-                let mesh = Element::new("mesh").with("filename", path);
+            let shape = |kind, file: &str| {
+                let mesh = Element::new("mesh").with("filename", format!("{MESHES}/{file}"));
                 let geometry = Element::new("geometry").child(mesh);
                 Element::new(kind).child(origin(part.solid.pose())).child(geometry)
             };
             let seen = files.add_obj(&part.id, &part.mesh);
             element = element.child(shape("visual", &seen).with("name", &part.id));
-            for (k, path) in files.add_pieces(part).iter().enumerate() {
+            for (k, file) in files.add_pieces(part).iter().enumerate() {
                 let name = format!("{}_contact_{k}", part.id);
-                let felt = shape("collision", path).with("name", name);
+                let felt = shape("collision", file).with("name", name);
                 element = element.child(felt.child(drake_friction(tree.body.friction)));
             }
         }

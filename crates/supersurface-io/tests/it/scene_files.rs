@@ -8,7 +8,7 @@ use supersurface::camera::Camera;
 use supersurface::combine::{Assembly, Joint, JointKind, Part};
 use supersurface::numeric::random::Stream;
 use supersurface::scene::{Board, Body, Scene, demo, household, place};
-use supersurface::shape::{Posed, Superellipsoid};
+use supersurface::shape::{Posed, Superellipsoid, Supertoroid};
 use supersurface::surface::Surface;
 use supersurface::{Direction, Point, Pose, Vector};
 use supersurface_io::{
@@ -56,7 +56,7 @@ fn odd() -> (Scene, SceneExtras) {
         Surface::twisted(core, 0.13).unwrap(),
         Surface::bent(core, 9.7, -2.9).unwrap(),
         Surface::tapered_bent(core, [0.1, 0.2], -7.1, 0.7).unwrap(),
-        household(40, 3).unwrap().into_iter().find(|(_, s)| s.ring_ratio().is_some()).unwrap().1,
+        Surface::Supertoroid(Supertoroid::new([0.01, 0.012, 0.02], 2.9, [0.3, 1.1]).unwrap()),
     ];
     let parts = surfaces
         .iter()
