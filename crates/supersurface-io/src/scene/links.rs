@@ -21,6 +21,8 @@ use crate::error::{WriteError, printable};
 
 /// Half the thickness of the table's top, in metres.
 const TABLE: f64 = 0.02;
+/// Most links of a body: they may hang one from the other, and files nest as deep.
+const MOST_LINKS: usize = 500;
 /// Names that files or simulators keep for themselves.
 const RESERVED: [&str; 6] = ["scene", "scene_world", "meshes", "world", "materials", "default"];
 
@@ -229,7 +231,12 @@ impl<'a> Tree<'a> {
         let solids = body.shape.bodies(&body.shape.rest_rotations());
         let parts: Vec<_> = body.shape.parts().iter().zip(&solids).collect();
         let mut links = Vec::new();
-        for Group { parts: members, joint } in groups(&body.shape) {
+        let groups = groups(&body.shape);
+        if groups.len() > MOST_LINKS {
+            let problem = format!("{} links: at most {MOST_LINKS} are written", groups.len());
+            return Err(format!("{problem}; fix parts to each other that need not move"));
+        }
+        for Group { parts: members, joint } in groups {
             let origin = joint.as_ref().map_or_else(Vector::zeros, |(_, anchor)| *anchor);
             let to_link = Pose::from_parts((-origin).into(), UnitQuaternion::identity());
             let mut mass = Mass { mass: 0.0, centre: Point::origin(), inertia: Matrix3::zeros() };
