@@ -14,6 +14,8 @@
 //! | pairs of bodies (JSON) | in | [`read_contact_cases`] |
 //! | contact (JSON) | out | [`contact_json`], [`contact_line`] |
 //! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
+//! | scene (JSON, MJCF, URDF, SDFormat, USDA, GLB, meshes) | out | [`write_scene`] |
+//! | scene (JSON) | in | [`read_scene`] |
 //!
 //! The readers are our own: of the kept crates, those for PCD and PLY allocate what a header promises
 //! before they look at the file, and refuse files that depth cameras and PCL write every day (padding
@@ -42,6 +44,7 @@ mod pcd;
 mod ply;
 mod read;
 mod report_json;
+mod scene;
 mod shape_json;
 mod surface_row;
 mod text;
@@ -62,6 +65,10 @@ pub use mesh_files::write_mesh;
 pub use npy::write_labels;
 pub use read::{Read, ReadOptions, parse, read, shown_name};
 pub use report_json::{ReportHead, failure_json, report_json};
+pub use scene::{
+    GRAVITY, SceneCamera, SceneExtras, SceneFile, SceneFormat, Site, Touch, parse_scene,
+    read_scene, write_scene,
+};
 pub use shape_json::{Model, parse_shape, read_shape};
 pub use things::{BUILT_IN_THINGS, read_things};
 pub use write::{write_png, write_text};

@@ -38,7 +38,7 @@ pub fn write_mesh(file: &Path, mesh: &Mesh) -> Result<(), WriteError> {
 }
 
 /// Lines `v x y z` and `f i j k`, counted from 1.
-fn obj(mesh: &Mesh) -> Vec<u8> {
+pub(crate) fn obj(mesh: &Mesh) -> Vec<u8> {
     let mut text = String::from("# vertices in metres\n");
     // writing into a string cannot fail
     for v in mesh.vertices() {
@@ -50,7 +50,7 @@ fn obj(mesh: &Mesh) -> Vec<u8> {
     text.into_bytes()
 }
 
-fn ply(mesh: &Mesh) -> Vec<u8> {
+pub(crate) fn ply(mesh: &Mesh) -> Vec<u8> {
     let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
     let header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment vertices in metres\n\
@@ -71,7 +71,7 @@ fn ply(mesh: &Mesh) -> Vec<u8> {
 
 /// 80 bytes of header (which must not begin with `solid`), the number of triangles; for each its normal (zero where
 /// it has no area), its corners and two bytes that mean nothing.
-fn stl(mesh: &Mesh) -> Vec<u8> {
+pub(crate) fn stl(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("{:80}", "binary STL, metres").into_bytes();
     bytes.reserve(4 + 50 * mesh.triangles().len());
     bytes.extend((mesh.triangles().len() as u32).to_le_bytes());

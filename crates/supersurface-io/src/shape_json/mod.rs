@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use supersurface::combine::{Alpha, Assembly, Blend, CombinedSolid, Joint, Part};
 use supersurface::shape::{ExtendedSuperellipsoid, Implicit, InvalidShape, Posed, Quadric};
-use supersurface::surface::Solid;
+use supersurface::surface::{Solid, Surface};
 use supersurface::{Pose, Vector};
 
 use self::rows::{AssemblyRow, DeformationRow, Leaf, NamedDeformations, ShapeRow, TreeRow};
@@ -194,6 +194,43 @@ fn combined(tree: TreeRow, operation: &str, at: &str) -> Result<CombinedSolid, F
     whole.ok_or_else(|| Fault::new(format!("{at}.of"), "is empty"))
 }
 
+/// One of the surfaces that scenes are made of.
+pub(crate) fn surface(value: Value, at: &str) -> Result<Posed<Surface>, Fault> {
+    let other = || {
+        let problem = "is none of the shapes of a scene: superellipsoids (tapered, twisted, bent, or tapered then bent) \
+                       and supertoroids";
+        Fault::new(at, problem)
+    };
+    let Model::Solid(solid) = model(value, at)? else { return Err(other()) };
+    let surface = recovered(solid.shape()).ok_or_else(other)?;
+    Posed::new(surface, *solid.pose()).map_err(|e| Fault::new(at, e.to_string()))
+}
+
+/// A solid as a surface, where it is one.
+fn recovered(solid: &Solid) -> Option<Surface> {
+    let core = |solid: &Solid| match solid {
+        Solid::Superellipsoid(s) => Some(*s),
+        _ => None,
+    };
+    match solid {
+        Solid::Superellipsoid(s) => Some(Surface::Superellipsoid(*s)),
+        Solid::Supertoroid(s) => Some(Surface::Supertoroid(*s)),
+        Solid::Tapered(s) => Surface::tapered(core(s.shape())?, s.deformation().slopes()).ok(),
+        Solid::Twisted(s) => Surface::twisted(core(s.shape())?, s.deformation().turns()).ok(),
+        Solid::Bent(s) => {
+            let (curvature, angle) = (s.deformation().curvature(), s.deformation().angle());
+            match s.shape() {
+                Solid::Tapered(cone) => {
+                    let slopes = cone.deformation().slopes();
+                    Surface::tapered_bent(core(cone.shape())?, slopes, curvature, angle).ok()
+                }
+                straight => Surface::bent(core(straight)?, curvature, angle).ok(),
+            }
+        }
+        _ => None,
+    }
+}
+
 /// Parts and joints, all moved by the assembly's pose.
 fn assembly(row: AssemblyRow, pose: &Pose, at: &str) -> Result<Assembly<Solid>, Fault> {
     let mut parts = Vec::with_capacity(row.parts.len());
@@ -236,13 +273,16 @@ fn pose(fields: &mut Map<String, Value>, at: &str) -> Result<Pose, Fault> {
 pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Result<UnitQuaternion<f64>, String> {
     let q = Quaternion::new(w, x, y, z);
     let length = q.norm();
-    if (length - 1.0).abs() <= 1e-3 {
+    if (length - 1.0).abs() <= 1e-15 {
+        // as it is, so that what was written comes back with every digit
+        Ok(UnitQuaternion::new_unchecked(q))
+    } else if (length - 1.0).abs() <= 1e-3 {
         Ok(UnitQuaternion::from_quaternion(q))
     } else {
         Err(format!("has the length {length}: a rotation's quaternion w, x, y, z has 1"))
     }
 }
 
-fn row<T: DeserializeOwned>(value: Value, at: &str) -> Result<T, Fault> {
+pub(crate) fn row<T: DeserializeOwned>(value: Value, at: &str) -> Result<T, Fault> {
     serde_json::from_value(value).map_err(|e| Fault::new(at, e.to_string()))
 }

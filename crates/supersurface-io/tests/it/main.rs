@@ -6,6 +6,7 @@ mod faults;
 mod formats;
 mod grippers;
 mod odd_files;
+mod scene_files;
 mod shapes;
 mod things;
 mod write;

@@ -72,6 +72,11 @@ impl Camera {
         self.centre
     }
 
+    /// Lens distortion `[k1, k2, p1, p2, k3, k4, k5, k6]`; zeros for a lens that has none.
+    pub const fn distortion(&self) -> [f64; 8] {
+        self.distortion
+    }
+
     /// The point at depth 1 m (z = 1) that pixel (u, v) sees: its undistorted image coordinates.
     ///
     /// Distortion is undone by fixed-point iteration, which converges for lenses whose map is one to
