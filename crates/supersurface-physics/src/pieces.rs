@@ -12,7 +12,7 @@ use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
 use parry3d_f64::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d_f64::shape::{
-    Compound, CompositeShape, FeatureId, Shape, ShapeType, SharedShape, TypedShape,
+    CompositeShape, Compound, FeatureId, Shape, ShapeType, SharedShape, TypedShape,
 };
 use supersurface::measure::ClosestFinder;
 use supersurface::numeric::powers::power;

@@ -7,9 +7,10 @@
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, SupportMap};
 
-/// Tilt of the four directions along each of two tangents, in radians: more reaches nearer to a face's corners, and farther
-/// away from the point of contact where the surface is round.
-const TILT: f64 = 0.035;
+/// Tilt of the four directions along each of two tangents, in radians. More reaches nearer to a face's corners, but where
+/// the surface is round the corners lie higher than the point of contact, and bodies rock on it: with 0.035 a third of
+/// single bodies never came to rest, with 0.001 stacks did not.
+const TILT: f64 = 0.01;
 
 /// The polygon towards a direction.
 pub(super) fn tilted(solid: &impl SupportMap, dir: Vector, out: &mut PolygonalFeature) {

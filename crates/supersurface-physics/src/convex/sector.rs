@@ -9,9 +9,7 @@
 use std::f64::consts::TAU;
 
 use supersurface::numeric::powers::{quadrant_cos_sin, signed_power};
-use supersurface::shape::{
-    Mass, MassProperties, Superellipsoid, Supertoroid, SupportMap,
-};
+use supersurface::shape::{Mass, MassProperties, Superellipsoid, Supertoroid, SupportMap};
 use supersurface::{Point, Vector};
 
 /// A sector's hull in the toroid's frame.

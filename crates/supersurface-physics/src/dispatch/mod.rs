@@ -108,7 +108,13 @@ where
         let is = |kind: ShapeType| [g1, g2].iter().any(|g| g.shape_type() == kind);
         if is(ShapeType::Ball) || !(ours(g1) || ours(g2)) {
             return DefaultQueryDispatcher.contact_manifold_convex_convex(
-                pos12, g1, g2, constraints1, constraints2, prediction, manifold,
+                pos12,
+                g1,
+                g2,
+                constraints1,
+                constraints2,
+                prediction,
+                manifold,
             );
         }
         if is(ShapeType::HalfSpace) {

@@ -55,6 +55,11 @@ impl QueryDispatcher for Dispatcher {
                 Contact::new(p1, p2, n1, n2, touch.distance)
             }));
         }
+        // parry forgets to turn the pose around for a half space that comes second
+        if g2.as_halfspace().is_some() && g1.as_halfspace().is_none() {
+            let turned = self.contact(&pos12.inverse(), g2, g1, prediction)?;
+            return Ok(turned.map(Contact::flipped));
+        }
         match [g1.as_composite_shape(), g2.as_composite_shape()] {
             [Some(parts), _] => Ok(of_parts(pos12, parts, g2, prediction)),
             [None, Some(parts)] => {

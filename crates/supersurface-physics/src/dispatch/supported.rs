@@ -3,9 +3,9 @@
 use std::any::{Any, TypeId};
 
 use parry3d_f64::math::Pose as ParryPose;
+use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d_f64::shape::{Cuboid, Shape, ShapeType, Triangle};
-use parry3d_f64::math::Vector as ParryVector;
 use rapier3d_f64::dynamics::RigidBodySet;
 use rapier3d_f64::geometry::ColliderSet;
 
@@ -13,7 +13,9 @@ use super::Dispatcher;
 
 /// Two shapes between which no contacts can be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no contacts are known between {first:?} and {second:?}: they would pass through each other")]
+#[error(
+    "no contacts are known between {first:?} and {second:?}: they would pass through each other"
+)]
 pub struct UnsupportedPair {
     /// Type of the first shape, of a part where it has some.
     pub first: ShapeType,
@@ -38,11 +40,16 @@ impl Dispatcher {
                 // far apart, as only the kinds count
                 let apart = ParryPose::from_translation(ParryVector::X * 1e6);
                 let found = self.contact_manifold_convex_convex(
-                    &apart, a, b, None, None, 0.0, &mut manifold,
+                    &apart,
+                    a,
+                    b,
+                    None,
+                    None,
+                    0.0,
+                    &mut manifold,
                 );
                 if found.is_err() && result.is_ok() {
-                    result =
-                        Err(UnsupportedPair { first: a.shape_type(), second: b.shape_type() });
+                    result = Err(UnsupportedPair { first: a.shape_type(), second: b.shape_type() });
                 }
             });
         });

@@ -10,6 +10,8 @@
 mod overlap;
 mod world;
 
+pub use self::world::integration_parameters;
+
 use supersurface::mesh::Mesh;
 use supersurface::shape::{Plane, Posed};
 use supersurface::surface::Surface;
@@ -53,7 +55,13 @@ impl Default for Ground {
     /// A floor at z = 0 and nothing else; friction 0.5, no restitution.
     fn default() -> Self {
         let floor = Plane::through(&supersurface::Point::origin(), Vector::z_axis());
-        Self { floor: Some(floor), cuboids: Vec::new(), mesh: None, friction: 0.5, restitution: 0.0 }
+        Self {
+            floor: Some(floor),
+            cuboids: Vec::new(),
+            mesh: None,
+            friction: 0.5,
+            restitution: 0.0,
+        }
     }
 }
 
@@ -82,7 +90,7 @@ impl Default for SettleOptions {
             rate: 240.0,
             time_limit: 8.0,
             still: 0.004,
-            rocking: 4.0,
+            rocking: 1.0,
             tolerance: 2e-5,
         }
     }

@@ -2,7 +2,9 @@
 
 use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
 use parry3d_f64::shape::SharedShape;
-use rapier3d_f64::dynamics::{RigidBodyBuilder, RigidBodyHandle, SpringCoefficients};
+use rapier3d_f64::dynamics::{
+    IntegrationParameters, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
+};
 use rapier3d_f64::geometry::ColliderBuilder;
 use rapier3d_f64::pipeline::PhysicsWorld;
 use supersurface::Point;
@@ -17,11 +19,16 @@ use crate::shape::shape;
 const PREDICTION: f64 = 0.1;
 /// A pair's contacts are taken from the step before while it moved by less than this share of the half size.
 const RECYCLED: f64 = 2e-4;
+/// What rapier counts as touching, as a share of the half size.
+const SLOP: f64 = 1e-3;
 /// Bodies keep this distance, as a share of the smallest half size, and at most [`WIDEST_SKIN`] metres.
 const SKIN: f64 = 1e-3;
 const WIDEST_SKIN: f64 = 2e-5;
-/// Frequencies of the springs that push bodies out of each other and out of the ground, as shares of the rate.
-const STIFFNESS: [f64; 2] = [0.5, 0.5];
+/// Frequencies of the springs that push bodies out of each other and out of the ground, as shares of the rate: stiffer ones
+/// keep bodies from coming to rest, softer ones leave deeper overlaps to the correction.
+const STIFFNESS: [f64; 2] = [0.35, 0.25];
+/// Their damping ratio, rapier's default.
+const DAMPING: f64 = 10.0;
 /// How far below everything a body is lost, in its sizes.
 const LOST: f64 = 4.0;
 
@@ -72,14 +79,7 @@ impl Fall {
         let mut world = PhysicsWorld::new();
         world.gravity = from_vector(&options.gravity);
         world.narrow_phase.set_query_dispatcher(Dispatcher);
-        let parameters = &mut world.integration_parameters;
-        parameters.dt = options.rate.recip();
-        parameters.normalized_prediction_distance = PREDICTION * smallest;
-        parameters.normalized_allowed_linear_error = 1e-3 * smallest;
-        parameters.normalized_contact_recycle_distance = RECYCLED * smallest;
-        let spring = |share: f64| SpringCoefficients::new(share * options.rate, 10.0);
-        parameters.contact_softness = spring(STIFFNESS[0]);
-        parameters.static_contact_softness = spring(STIFFNESS[1]);
+        world.integration_parameters = integration_parameters(smallest, options.rate);
         let skin = 0.5 * (SKIN * smallest).min(WIDEST_SKIN);
         for (pose, shape) in &statics {
             let collider = ColliderBuilder::new(shape.clone())
@@ -99,7 +99,8 @@ impl Fall {
                 .soft_ccd_prediction(*half);
             let handle = world.insert_body(rigid);
             if let Some(rigid) = world.bodies.get_mut(handle) {
-                rigid.activation_mut().normalized_linear_threshold = options.still * (g * half).sqrt();
+                rigid.activation_mut().normalized_linear_threshold =
+                    options.still * (g * half).sqrt();
             }
             for (pose, shape) in shapes {
                 let collider = ColliderBuilder::new(shape.clone())
@@ -172,6 +173,27 @@ impl Fall {
         let poses = self.handles.iter().map(|h| *self.world.bodies[*h].position()).collect();
         let masses = self.handles.iter().map(|h| self.world.bodies[*h].mass()).collect();
         Layout::new(moving.chain(fixed).collect(), poses, masses)
+    }
+}
+
+/// rapier's parameters for bodies whose smallest has this half size in metres (half of its largest extent), and this many
+/// steps per second: rapier's own suit bodies of metres, and let those of centimetres sink and creep.
+///
+/// ```
+/// let parameters = supersurface_physics::integration_parameters(0.03, 240.0);
+/// assert!((parameters.prediction_distance() - 0.003).abs() < 1e-15);
+/// ```
+pub fn integration_parameters(half_size: f64, rate: f64) -> IntegrationParameters {
+    let spring = |share: f64| SpringCoefficients::new(share * rate, DAMPING);
+    let [between, ground] = STIFFNESS;
+    IntegrationParameters {
+        dt: rate.recip(),
+        normalized_prediction_distance: PREDICTION * half_size,
+        normalized_allowed_linear_error: SLOP * half_size,
+        normalized_contact_recycle_distance: RECYCLED * half_size,
+        contact_softness: spring(between),
+        static_contact_softness: spring(ground),
+        ..IntegrationParameters::default()
     }
 }
 
