@@ -1,0 +1,217 @@
+//! The fall: a rapier world with lengths, speeds and damping in proportion to the bodies.
+
+use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
+use parry3d_f64::shape::SharedShape;
+use rapier3d_f64::dynamics::{
+    IntegrationParameters, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
+};
+use rapier3d_f64::geometry::ColliderBuilder;
+use rapier3d_f64::pipeline::PhysicsWorld;
+use supersurface::Point;
+
+use super::overlap::{Item, Layout};
+use super::{Falling, Ground, Rest, SettleError, SettleOptions};
+use crate::convert::{from_point, from_pose, from_vector, to_pose};
+use crate::dispatch::Dispatcher;
+use crate::shape::shape;
+
+/// Contacts are predicted from this share of a body's half size on.
+const PREDICTION: f64 = 0.1;
+/// A pair's contacts are taken from the step before while it moved by less than this share of the half size.
+const RECYCLED: f64 = 2e-4;
+/// What rapier counts as touching, as a share of the half size.
+const SLOP: f64 = 1e-3;
+/// Bodies keep this distance, as a share of the smallest half size, and at most [`WIDEST_SKIN`] metres.
+const SKIN: f64 = 1e-3;
+const WIDEST_SKIN: f64 = 2e-5;
+/// Frequencies of the springs that push bodies out of each other and out of the ground, as shares of the rate: stiffer ones
+/// keep bodies from coming to rest, softer ones leave deeper overlaps to the correction.
+const STIFFNESS: [f64; 2] = [0.35, 0.25];
+/// Their damping ratio, rapier's default.
+const DAMPING: f64 = 10.0;
+/// How far below everything a body is lost, in its sizes.
+const LOST: f64 = 4.0;
+
+/// A world of falling bodies.
+pub(super) struct Fall {
+    world: PhysicsWorld,
+    handles: Vec<RigidBodyHandle>,
+    /// Shapes of the bodies' parts with their poses in the body, and half the body's size in metres.
+    bodies: Vec<(Vec<(ParryPose, SharedShape)>, f64)>,
+    ground: Vec<(ParryPose, SharedShape)>,
+    lost: Vec<bool>,
+    /// Below this height along gravity nothing is left to lie on, apart from the floor.
+    lowest: f64,
+}
+
+impl Fall {
+    pub(super) fn new(
+        falling: &[Falling],
+        ground: &Ground,
+        options: &SettleOptions,
+    ) -> Result<Self, SettleError> {
+        let mut bodies = Vec::new();
+        for (body, Falling { parts, .. }) in falling.iter().enumerate() {
+            let shapes: Result<Vec<_>, _> =
+                parts.iter().map(|p| Ok((from_pose(p.pose()), shape(p.shape())?))).collect();
+            let shapes = shapes.map_err(|why| SettleError::Body { body, why })?;
+            let boxes = shapes.iter().map(|(pose, s)| s.compute_aabb(pose));
+            let Some(bounds) = boxes.reduce(|a, b| {
+                parry3d_f64::bounding_volume::Aabb::new(a.mins.min(b.mins), a.maxs.max(b.maxs))
+            }) else {
+                return Err(SettleError::Body { body, why: crate::NoShape::Empty });
+            };
+            bodies.push((shapes, bounds.half_extents().max_element()));
+        }
+        let statics = ground_shapes(ground)?;
+        let smallest = bodies.iter().map(|(_, r)| *r).fold(f64::INFINITY, f64::min).min(1e6);
+        let down = options.gravity.normalize();
+        let lowest = statics.iter().filter(|(_, s)| s.as_halfspace().is_none()).map(|(pose, s)| {
+            let bounds = s.compute_aabb(pose);
+            let vertices = bounds.vertices();
+            vertices.iter().map(|v| v.dot(from_vector(&down))).fold(f64::NEG_INFINITY, f64::max)
+        });
+        let lowest = match ground.floor {
+            Some(_) => f64::INFINITY,
+            None => lowest.fold(f64::NEG_INFINITY, f64::max),
+        };
+
+        let mut world = PhysicsWorld::new();
+        world.gravity = from_vector(&options.gravity);
+        world.narrow_phase.set_query_dispatcher(Dispatcher);
+        world.integration_parameters = integration_parameters(smallest, options.rate);
+        let skin = 0.5 * (SKIN * smallest).min(WIDEST_SKIN);
+        for (pose, shape) in &statics {
+            let collider = ColliderBuilder::new(shape.clone())
+                .position(*pose)
+                .friction(ground.friction)
+                .restitution(ground.restitution)
+                .contact_skin(skin);
+            world.insert_collider(collider, None);
+        }
+        let g = options.gravity.norm();
+        let mut handles = Vec::new();
+        for (body, (shapes, half)) in falling.iter().zip(&bodies) {
+            let damping = (g / half).sqrt() / options.rocking;
+            let rigid = RigidBodyBuilder::dynamic()
+                .pose(from_pose(&body.start))
+                .angular_damping(damping)
+                .soft_ccd_prediction(*half);
+            let handle = world.insert_body(rigid);
+            if let Some(rigid) = world.bodies.get_mut(handle) {
+                rigid.activation_mut().normalized_linear_threshold =
+                    options.still * (g * half).sqrt();
+            }
+            for (pose, shape) in shapes {
+                let collider = ColliderBuilder::new(shape.clone())
+                    .position(*pose)
+                    .density(body.density)
+                    .friction(body.friction)
+                    .restitution(body.restitution)
+                    .contact_skin(skin);
+                world.insert_collider(collider, Some(handle));
+            }
+            handles.push(handle);
+        }
+        Dispatcher.check_world(&world.bodies, &world.colliders)?;
+        let lost = vec![false; handles.len()];
+        Ok(Self { world, handles, bodies, ground: statics, lost, lowest })
+    }
+
+    /// Steps until all lie still or the time is over; returns the simulated seconds.
+    pub(super) fn run(&mut self, options: &SettleOptions) -> f64 {
+        let steps = (options.time_limit * options.rate) as usize;
+        for step in 0..steps {
+            if self.handles.iter().all(|h| self.world.bodies[*h].is_sleeping()) {
+                return step as f64 / options.rate;
+            }
+            self.world.step();
+            self.drop_lost(options);
+        }
+        steps as f64 / options.rate
+    }
+
+    /// Takes out what has fallen off.
+    fn drop_lost(&mut self, options: &SettleOptions) {
+        let down = from_vector(&options.gravity.normalize());
+        for (k, handle) in self.handles.iter().enumerate() {
+            let Some(body) = self.world.bodies.get_mut(*handle) else { continue };
+            let at = body.position().translation;
+            let fallen = at.dot(down) > self.lowest + LOST * self.bodies[k].1;
+            if !self.lost[k] && (fallen || !at.is_finite()) {
+                self.lost[k] = true;
+                body.set_enabled(false);
+                body.sleep();
+            }
+        }
+    }
+
+    pub(super) fn rests(&self) -> Vec<Rest> {
+        let rest = |(handle, lost): (&RigidBodyHandle, &bool)| {
+            let body = &self.world.bodies[*handle];
+            let at_rest = body.is_sleeping() && !lost;
+            Rest { pose: to_pose(body.position()), at_rest, lost: *lost }
+        };
+        self.handles.iter().zip(&self.lost).map(rest).collect()
+    }
+
+    /// All shapes where they are now.
+    pub(super) fn layout(&self) -> Layout {
+        let items = self.bodies.iter().enumerate().filter(|(k, _)| !self.lost[*k]);
+        let moving = items.flat_map(|(body, (shapes, _))| {
+            shapes.iter().map(move |(local, shape)| Item {
+                body: Some(body),
+                local: *local,
+                shape: shape.clone(),
+            })
+        });
+        let fixed = self.ground.iter().map(|(pose, shape)| Item {
+            body: None,
+            local: *pose,
+            shape: shape.clone(),
+        });
+        let poses = self.handles.iter().map(|h| *self.world.bodies[*h].position()).collect();
+        let masses = self.handles.iter().map(|h| self.world.bodies[*h].mass()).collect();
+        Layout::new(moving.chain(fixed).collect(), poses, masses)
+    }
+}
+
+/// rapier's parameters for bodies whose smallest has this half size in metres (half of its largest extent), and this many
+/// steps per second: rapier's own suit bodies of metres, and let those of centimetres sink and creep.
+///
+/// ```
+/// let parameters = supersurface_physics::integration_parameters(0.03, 240.0);
+/// assert!((parameters.prediction_distance() - 0.003).abs() < 1e-15);
+/// ```
+pub fn integration_parameters(half_size: f64, rate: f64) -> IntegrationParameters {
+    let spring = |share: f64| SpringCoefficients::new(share * rate, DAMPING);
+    let [between, ground] = STIFFNESS;
+    IntegrationParameters {
+        dt: rate.recip(),
+        normalized_prediction_distance: PREDICTION * half_size,
+        normalized_allowed_linear_error: SLOP * half_size,
+        normalized_contact_recycle_distance: RECYCLED * half_size,
+        contact_softness: spring(between),
+        static_contact_softness: spring(ground),
+        ..IntegrationParameters::default()
+    }
+}
+
+fn ground_shapes(ground: &Ground) -> Result<Vec<(ParryPose, SharedShape)>, SettleError> {
+    let mut shapes = Vec::new();
+    if let Some(plane) = &ground.floor {
+        let on_plane = from_point(&plane.project(&Point::origin()));
+        let normal = from_vector(&plane.normal());
+        shapes.push((ParryPose::from_translation(on_plane), SharedShape::halfspace(normal)));
+    }
+    for (pose, [x, y, z]) in &ground.cuboids {
+        shapes.push((from_pose(pose), SharedShape::cuboid(*x, *y, *z)));
+    }
+    if let Some(mesh) = &ground.mesh {
+        let vertices: Vec<ParryVector> = mesh.vertices().iter().map(from_point).collect();
+        let made = SharedShape::trimesh(vertices, mesh.triangles().to_vec());
+        let made = made.map_err(|why| SettleError::Mesh(why.to_string()))?;
+        shapes.push((ParryPose::identity(), made));
+    }
+    Ok(shapes)
+}
