@@ -14,6 +14,7 @@
 //! | pairs of bodies (JSON) | in | [`read_contact_cases`] |
 //! | contact (JSON) | out | [`contact_json`], [`contact_line`] |
 //! | mesh (OBJ, PLY, STL) | out | [`write_mesh`] |
+//! | what a simulated camera saw (PNG, PCD, JSON) | out | [`write_view`] |
 //! | scene (JSON, MJCF, URDF, SDFormat, USDA, GLB, meshes) | out | [`write_scene`] |
 //! | scene (JSON) | in | [`read_scene`] |
 //!
@@ -49,6 +50,7 @@ mod shape_json;
 mod surface_row;
 mod text;
 mod things;
+mod view_files;
 mod write;
 
 pub use camera_json::{DepthCamera, read_camera};
@@ -71,4 +73,5 @@ pub use scene::{
 };
 pub use shape_json::{Model, parse_shape, read_shape};
 pub use things::{BUILT_IN_THINGS, read_things};
+pub use view_files::write_view;
 pub use write::{write_png, write_text};

@@ -36,14 +36,30 @@ pub fn write_text(file: &Path, text: &str) -> Result<(), WriteError> {
 
 /// Writes a picture: `size` is [width, height], `pixels` red, green, blue row by row.
 pub fn write_png(file: &Path, size: [usize; 2], pixels: &[u8]) -> Result<(), WriteError> {
+    encoded(file, size, png::ColorType::Rgb, png::BitDepth::Eight, pixels)
+}
+
+/// Writes an image of one number of 16 bits a pixel.
+pub(crate) fn write_grey(file: &Path, size: [usize; 2], pixels: &[u16]) -> Result<(), WriteError> {
+    let bytes: Vec<u8> = pixels.iter().flat_map(|v| v.to_be_bytes()).collect();
+    encoded(file, size, png::ColorType::Grayscale, png::BitDepth::Sixteen, &bytes)
+}
+
+fn encoded(
+    file: &Path,
+    size: [usize; 2],
+    colour: png::ColorType,
+    depth: png::BitDepth,
+    bytes: &[u8],
+) -> Result<(), WriteError> {
     let encode = || -> Result<Vec<u8>, png::EncodingError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
+        let mut out = Vec::new();
+        let mut encoder = png::Encoder::new(&mut out, size[0] as u32, size[1] as u32);
+        encoder.set_color(colour);
+        encoder.set_depth(depth);
         encoder.set_compression(png::Compression::Fast);
-        encoder.write_header()?.write_image_data(pixels)?;
-        Ok(bytes)
+        encoder.write_header()?.write_image_data(bytes)?;
+        Ok(out)
     };
     let bytes = encode().map_err(|e| WriteError::new(file, io::Error::other(e)))?;
     write_bytes(file, &bytes)

@@ -18,6 +18,8 @@ pub struct Look {
     pub depth: DepthImage,
     /// For each pixel: k for the body `bodies[k - 1]`, 0 for the table and where there is no reading.
     pub labels: Vec<u32>,
+    /// The same of what each pixel's ray meets, read or not.
+    pub seen: Vec<u32>,
     /// Outward unit normal in the optical frame of what each pixel's ray meets, without noise; zero where it meets
     /// nothing.
     pub normals: Vec<[f32; 3]>,
@@ -74,7 +76,8 @@ pub fn look(
     let depth = DepthImage::new([width, height], depth);
     let to_optical = camera_pose.rotation.inverse().cast::<f32>();
     let normals = seen.iter().map(|s| (to_optical * s.normal).into()).collect();
-    Look { depth: depth.unwrap_or_else(|| DepthImage::empty(camera)), labels, normals }
+    let depth = depth.unwrap_or_else(|| DepthImage::empty(camera));
+    Look { depth, labels, seen: seen.iter().map(|s| s.label).collect(), normals }
 }
 
 /// The error of a pixel that is the mean of its square's, scaled to a standard deviation of 1. The pixels of a square have
