@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::mass_properties::MassProperties;
-use parry3d_f64::math::{Matrix, Pose as ParryPose, Vector as ParryVector};
+use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
 use parry3d_f64::query::details::{
     local_point_projection_on_support_map, local_ray_intersection_with_support_map_with_params,
 };
@@ -23,14 +23,15 @@ use parry3d_f64::shape::{
 use supersurface::contact::Convex;
 use supersurface::deform::{Deformed, Taper};
 use supersurface::measure::{ClosestFinder, first_hit};
+use supersurface::nalgebra::{Translation3, UnitQuaternion};
 use supersurface::shape::{
     Implicit, Mass, MassProperties as _, Ray as LibraryRay, Superellipsoid, SupportMap as _,
 };
-use supersurface::{Direction, Vector};
+use supersurface::{Direction, Pose, Vector};
 
 pub(crate) use self::sector::Sector;
 use self::tapered::Tapered;
-use crate::convert::{from_point, to_point, to_vector};
+use crate::convert::{from_point, from_pose, from_vector, to_point, to_vector};
 
 /// A convex solid in its own frame, as parry and rapier take it. Lengths are metres.
 ///
@@ -90,10 +91,22 @@ impl ConvexSolid {
     }
 }
 
-/// Mass properties as parry has them.
+/// Mass properties as parry has them, by principal axes.
 pub(crate) fn to_parry_mass(mass: &Mass) -> MassProperties {
-    let inertia = Matrix::from_cols_array(&mass.inertia.as_slice().try_into().unwrap_or([0.0; 9]));
-    MassProperties::with_inertia_matrix(from_point(&mass.centre), mass.mass, inertia)
+    let mut axes = mass.inertia.symmetric_eigen();
+    // a rotation, not a reflection
+    if axes.eigenvectors.determinant() < 0.0 {
+        axes.eigenvectors.neg_mut();
+    }
+    let turn = UnitQuaternion::from_matrix(&axes.eigenvectors);
+    let frame = from_pose(&Pose::from_parts(Translation3::identity(), turn)).rotation;
+    let inertia = from_vector(&axes.eigenvalues.map(|v| v.max(0.0)));
+    MassProperties::with_principal_inertia_frame(
+        from_point(&mass.centre),
+        mass.mass,
+        inertia,
+        frame,
+    )
 }
 
 impl SupportMap for ConvexSolid {
@@ -177,7 +190,7 @@ pub(crate) fn exact_hit(
         return Some(RayIntersection::new(0.0, ParryVector::ZERO, FeatureId::Unknown));
     }
     let hit = first_hit(shape, &LibraryRay { origin, direction }, max * speed)?;
-    let normal = crate::convert::from_vector(&hit.normal);
+    let normal = from_vector(&hit.normal);
     // from inside the surface is met from its back
     let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };
     Some(RayIntersection::new(hit.distance / speed, normal, FeatureId::Unknown))

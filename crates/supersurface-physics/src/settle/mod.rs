@@ -75,7 +75,7 @@ pub struct SettleOptions {
     /// Seconds after which the simulation ends, at rest or not.
     pub time_limit: f64,
     /// A body is still when no point of it is faster than this share of `√(g r)`, the speed of a fall through half
-    /// its size `r`.
+    /// its size `r`; when half of the time is over it grows, to four times this.
     pub still: f64,
     /// Rolling and rocking die out in this many times `√(r/g)`.
     pub rocking: f64,
@@ -89,7 +89,7 @@ impl Default for SettleOptions {
             gravity: Vector::new(0.0, 0.0, -9.81),
             rate: 240.0,
             time_limit: 8.0,
-            still: 0.004,
+            still: 0.006,
             rocking: 1.0,
             tolerance: 2e-5,
         }

@@ -29,6 +29,8 @@ const WIDEST_SKIN: f64 = 2e-5;
 const STIFFNESS: [f64; 2] = [0.35, 0.25];
 /// Their damping ratio, rapier's default.
 const DAMPING: f64 = 10.0;
+/// By what the speed of rest has grown when the time is over.
+const LATE: f64 = 4.0;
 /// How far below everything a body is lost, in its sizes.
 const LOST: f64 = 4.0;
 
@@ -98,10 +100,6 @@ impl Fall {
                 .angular_damping(damping)
                 .soft_ccd_prediction(*half);
             let handle = world.insert_body(rigid);
-            if let Some(rigid) = world.bodies.get_mut(handle) {
-                rigid.activation_mut().normalized_linear_threshold =
-                    options.still * (g * half).sqrt();
-            }
             for (pose, shape) in shapes {
                 let collider = ColliderBuilder::new(shape.clone())
                     .position(*pose)
@@ -125,10 +123,24 @@ impl Fall {
             if self.handles.iter().all(|h| self.world.bodies[*h].is_sleeping()) {
                 return step as f64 / options.rate;
             }
+            self.be_still(options, step as f64 / steps as f64);
             self.world.step();
             self.drop_lost(options);
         }
         steps as f64 / options.rate
+    }
+
+    /// Sets the speeds below which bodies are still: those of the options until half of the time is over, then growing, so
+    /// that what only trembles comes to rest.
+    fn be_still(&mut self, options: &SettleOptions, share: f64) {
+        let grown = 1.0 + (LATE - 1.0) * (2.0 * share - 1.0).max(0.0);
+        let g = options.gravity.norm();
+        for (handle, (_, half)) in self.handles.iter().zip(&self.bodies) {
+            if let Some(body) = self.world.bodies.get_mut(*handle) {
+                let speed = options.still * (g * half).sqrt();
+                body.activation_mut().normalized_linear_threshold = grown * speed;
+            }
+        }
     }
 
     /// Takes out what has fallen off.

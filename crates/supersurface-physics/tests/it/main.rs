@@ -1,0 +1,9 @@
+//! Integration tests of the physics, one binary.
+
+mod manifolds;
+mod piles;
+mod rest;
+mod scenes;
+mod settling;
+mod shapes;
+mod unsupported;
