@@ -16,7 +16,7 @@ use supersurface_io::{
 };
 
 const NAMES: [&str; 8] =
-    ["../../x", "<a&\"b\">", "", "", "Ünï ☕\u{7}\n", "NUL", "x' $(y) `z`", "scene"];
+    ["../../x", "<a&\"b\">", "", "", "Ünï ☕\u{7}\n", "NUL", "x' $(y) `z`", "Physics"];
 
 /// An empty folder of this test alone.
 fn folder(name: &str) -> PathBuf {
