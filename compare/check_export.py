@@ -150,6 +150,8 @@ class Scene:
     def rings(self):
         """Parts that have a hole: body, centre and axis in the world, tube radius, radius of the hole and of the ring."""
         for body in self.file["bodies"]:
+            if body["joints"]:  # which may turn parts
+                continue
             turn, at = rotation(body["orientation_wxyz"]), np.array(body["position"])
             for part in body["parts"]:
                 shape = part["shape"]

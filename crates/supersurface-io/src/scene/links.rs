@@ -24,7 +24,8 @@ const TABLE: f64 = 0.02;
 /// Most links of a body: they may hang one from the other, and files nest as deep.
 const MOST_LINKS: usize = 500;
 /// Names that files or simulators keep for themselves.
-const RESERVED: [&str; 6] = ["scene", "scene_world", "meshes", "world", "materials", "default"];
+const RESERVED: [&str; 7] =
+    ["scene", "scene_world", "meshes", "world", "materials", "physics", "default"];
 
 /// All that is written.
 pub(super) struct Prepared<'a> {

@@ -54,7 +54,8 @@ fn model(tree: &Tree<'_>, files: &mut Files) -> Element {
         let Some(parent) = link.joint.as_ref().and_then(|j| tree.links.get(j.parent)) else {
             continue;
         };
-        let joint = Element::new("joint").with("name", format!("{}_joint", link.id));
+        // nor has a link this name
+        let joint = Element::new("joint").with("name", format!("{}.joint", link.id));
         model = model.child(
             joint
                 .with("type", "ball")

@@ -227,7 +227,8 @@ fn joint(out: &mut Text, tree: &Tree<'_>, link: &Link, ball: &Ball) {
     }
     let apis: Vec<&str> = apis.iter().map(String::as_str).collect();
     let kind = if springy { "PhysicsJoint" } else { "PhysicsSphericalJoint" };
-    out.prim(kind, &format!("{}_joint", link.id), &apis, |out| {
+    // no id begins with an underscore, so that no link has this name
+    out.prim(kind, &format!("_joint_{}", link.id), &apis, |out| {
         let path = |link: &Link| format!("</World/{}/{}>", tree.id, link.id);
         out.line(&format!("rel physics:body0 = {}", path(parent)));
         out.line(&format!("rel physics:body1 = {}", path(link)));

@@ -16,7 +16,7 @@ use supersurface_io::{
 };
 
 const NAMES: [&str; 8] =
-    ["../../x", "<a&\"b\">", "", "", "Ünï ☕\u{7}\n", "NUL", "x' $(y) `z`", "scene"];
+    ["../../x", "<a&\"b\">", "", "", "Ünï ☕\u{7}\n", "NUL", "x' $(y) `z`", "Physics"];
 
 /// An empty folder of this test alone.
 fn folder(name: &str) -> PathBuf {
@@ -197,7 +197,7 @@ fn what_no_simulator_takes_is_refused() {
         write_scene(&folder, &scene, &extras, &SceneFormat::ALL).unwrap_err().to_string()
     };
     let weightless = |scene: &mut Scene| {
-        let body = scene.bodies[1].shape.parts()[0].body().clone();
+        let body = *scene.bodies[1].shape.parts()[0].body();
         scene.bodies[1].shape = Assembly::single(Part::new("can", body, 0.0).unwrap());
     };
     let error = refused(&weightless);
