@@ -8,6 +8,7 @@ use supersurface::fit::Family;
 use crate::contact::ContactArgs;
 use crate::fit::FitArgs;
 use crate::gallery::GalleryArgs;
+use crate::scene::SceneArgs;
 use crate::shape::{InfoArgs, MeshArgs, SampleArgs};
 use crate::threads::MOST;
 
@@ -34,6 +35,8 @@ pub(crate) enum Command {
     Fit(Box<FitArgs>),
     /// How far apart two convex bodies are, or how deep in each other.
     Contact(ContactArgs),
+    /// Makes scenes for simulators and for training.
+    Scene(SceneArgs),
     /// Draws the figures that explain the family.
     Gallery(GalleryArgs),
     /// What a shape is: size, volume, mass.

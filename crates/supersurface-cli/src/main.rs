@@ -12,6 +12,7 @@ mod numbers;
 mod outputs;
 mod places;
 mod progress;
+mod scene;
 mod segment;
 mod shape;
 mod show;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Demo(args) => demo::run(args),
         Command::Fit(args) => fit::run(args),
         Command::Contact(args) => contact::run(args),
+        Command::Scene(args) => scene::run(args),
         Command::Gallery(args) => gallery::run(args),
         Command::Info(args) => shape::info(args),
         Command::Mesh(args) => shape::mesh(args),

@@ -1,0 +1,157 @@
+//! What `supersurface scene` can be told.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use supersurface::scene::{DepthNoise, Layout};
+use supersurface_io::SceneFormat;
+
+use crate::threads::MOST;
+
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    #[command(subcommand)]
+    pub(super) command: SceneCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Draws things, lets them fall until they lie still, looks at them and writes all of it.
+    Random(RandomArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RandomArgs {
+    /// Number of bodies.
+    #[arg(long, short = 'n', value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub(super) count: u16,
+    /// How they lie; single takes one body (-n 1).
+    #[arg(long, value_enum, default_value_t = How::Pile)]
+    pub(super) layout: How,
+    /// What is drawn: a TOML file (docs/scene.md), or household, members.
+    #[arg(long, value_name = "NAME|FILE", default_value = "household")]
+    pub(super) things: String,
+    /// The same seed gives the same files.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Folder for the scene; it is made where it is missing.
+    #[arg(long, short, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+    /// What the scene is written as, beside our own JSON: all, or some of mjcf, urdf, sdf, usda, glb, obj, stl, ply.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
+    pub(super) formats: Vec<Format>,
+    /// Views of the scene, evenly around it; each is a folder of images, a cloud and a camera.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=360))]
+    pub(super) views: u16,
+    /// How the depth camera errs.
+    #[arg(long, value_enum, default_value_t = Noise::Realsense)]
+    pub(super) noise: Noise,
+    /// Standard deviation of --noise gaussian, in metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.001)]
+    pub(super) deviation: f64,
+    /// Number of threads; results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
+    pub(super) threads: Option<u16>,
+    /// Print scene.json instead of a table.
+    #[arg(long)]
+    pub(super) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// How bodies lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum How {
+    /// One body alone on a table.
+    Single,
+    /// Tipped into a bin.
+    Pile,
+    /// Upright beside each other on a table.
+    Packed,
+    /// Upright on the boards of a shelf.
+    Shelf,
+}
+
+impl How {
+    pub(super) const fn layout(self) -> Layout {
+        match self {
+            Self::Single => Layout::Single,
+            Self::Pile => Layout::Pile,
+            Self::Packed => Layout::Packed,
+            Self::Shelf => Layout::Shelf,
+        }
+    }
+}
+
+/// Kinds of files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// Every kind.
+    All,
+    /// MuJoCo.
+    Mjcf,
+    /// ROS, PyBullet, Drake.
+    Urdf,
+    /// Gazebo.
+    Sdf,
+    /// `OpenUSD`, Isaac Sim.
+    Usda,
+    /// glTF, for viewers.
+    Glb,
+    /// A mesh of each part.
+    Obj,
+    /// The same as binary STL.
+    Stl,
+    /// The same as binary PLY.
+    Ply,
+}
+
+/// The kinds of files that were asked for; our own JSON is always one.
+pub(super) fn formats(asked: &[Format]) -> Vec<SceneFormat> {
+    if asked.contains(&Format::All) {
+        return SceneFormat::ALL.to_vec();
+    }
+    let mut formats = vec![SceneFormat::Json];
+    formats.extend(asked.iter().filter_map(|format| {
+        Some(match format {
+            Format::All => return None,
+            Format::Mjcf => SceneFormat::Mjcf,
+            Format::Urdf => SceneFormat::Urdf,
+            Format::Sdf => SceneFormat::Sdf,
+            Format::Usda => SceneFormat::Usda,
+            Format::Glb => SceneFormat::Glb,
+            Format::Obj => SceneFormat::Obj,
+            Format::Stl => SceneFormat::Stl,
+            Format::Ply => SceneFormat::Ply,
+        })
+    }));
+    formats
+}
+
+/// Depth cameras.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Noise {
+    /// Exact depths.
+    None,
+    /// Normal errors of --deviation.
+    Gaussian,
+    /// Kinect of 2010: structured light.
+    KinectV1,
+    /// Azure Kinect: time of flight.
+    AzureKinect,
+    /// RealSense D415: stereo.
+    Realsense,
+}
+
+impl Noise {
+    pub(super) fn model(self, deviation: f64) -> DepthNoise {
+        match self {
+            Self::None => DepthNoise::none(),
+            Self::Gaussian => DepthNoise::gaussian(deviation),
+            Self::KinectV1 => DepthNoise::kinect_v1(),
+            Self::AzureKinect => DepthNoise::azure_kinect(),
+            Self::Realsense => DepthNoise::realsense(),
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! `supersurface scene`: makes scenes for simulators and for training.
+
+mod args;
+mod random;
+mod text;
+mod touches;
+
+pub(crate) use self::args::SceneArgs;
+
+use self::args::SceneCommand;
+use crate::exit::Failure;
+
+pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
+    match &args.command {
+        SceneCommand::Random(args) => random::run(args),
+    }
+}
