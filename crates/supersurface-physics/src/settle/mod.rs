@@ -75,7 +75,7 @@ pub struct SettleOptions {
     /// Seconds after which the simulation ends, at rest or not.
     pub time_limit: f64,
     /// A body is still when no point of it is faster than this share of `√(g r)`, the speed of a fall through half
-    /// its size `r`; when half of the time is over it grows, to four times this.
+    /// its size `r`; when half of the time is over it grows, to ten times this.
     pub still: f64,
     /// Rolling and rocking die out in this many times `√(r/g)`.
     pub rocking: f64,
@@ -89,7 +89,7 @@ impl Default for SettleOptions {
             gravity: Vector::new(0.0, 0.0, -9.81),
             rate: 240.0,
             time_limit: 8.0,
-            still: 0.006,
+            still: 0.004,
             rocking: 1.0,
             tolerance: 2e-5,
         }
@@ -206,7 +206,7 @@ fn check(bodies: &[Falling], ground: &Ground, options: &SettleOptions) -> Result
     let at_least_0 = |v: f64| v >= 0.0 && v.is_finite();
     let pose = |pose: &Pose, what| {
         let all = pose.translation.vector.iter().chain(pose.rotation.coords.iter());
-        let wrong = all.copied().find(|v| !(v.abs() < 1e6));
+        let wrong = all.copied().find(|v| v.is_nan() || v.abs() >= 1e6);
         number(wrong.is_none(), what, wrong.unwrap_or_default(), "finite and below 1e6")
     };
     for body in bodies {

@@ -30,7 +30,7 @@ const STIFFNESS: [f64; 2] = [0.35, 0.25];
 /// Their damping ratio, rapier's default.
 const DAMPING: f64 = 10.0;
 /// By what the speed of rest has grown when the time is over.
-const LATE: f64 = 4.0;
+const LATE: f64 = 10.0;
 /// How far below everything a body is lost, in its sizes.
 const LOST: f64 = 4.0;
 

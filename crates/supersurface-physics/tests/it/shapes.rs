@@ -11,7 +11,7 @@ use supersurface::surface::{Solid, Surface};
 use supersurface::{Direction, Point, Pose, Vector};
 use supersurface_physics::convert::{from_point, from_vector, to_point, to_vector};
 use supersurface_physics::parry::query::Ray as ParryRay;
-use supersurface_physics::parry::shape::{Shape, SharedShape};
+use supersurface_physics::parry::shape::SharedShape;
 use supersurface_physics::{ConvexSolid, NoShape, Pieces, compound, shape};
 
 fn superellipsoid(axes: [f64; 3], exponents: [f64; 2]) -> Superellipsoid {
