@@ -198,3 +198,31 @@ fn depths_of_bodies_in_rings_part_them_and_nothing_shorter_does() {
     );
     assert_eq!(shorter, 0, "shorter translations part");
 }
+
+#[test]
+fn tmp_profile() {
+    use supersurface::contact::{WarmStart, pair};
+    let mut random = Stream::new(79, 0);
+    let mut n = 0;
+    for _ in 0..30 {
+        let (torus, other) = ring_and_body(&mut random);
+        let [a,_,c] = torus.shape().semi_axes();
+        let disc = Superellipsoid::new([a, 1e-10*a.min(c), c], [torus.shape().exponents()[0], 1.0]).unwrap();
+        let disc = Convex::new(disc).unwrap();
+        let place = |k: f64| {
+            use supersurface::nalgebra::{Translation3, UnitQuaternion};
+            let place = Pose::from_parts(Translation3::new(a*k.cos()*torus.shape().ring_ratio(), a*k.sin()*torus.shape().ring_ratio(), 0.0), UnitQuaternion::from_axis_angle(&Vector::z_axis(), k));
+            Posed::new(disc, torus.pose()*place).unwrap()
+        };
+        let (mut apart, mut over) = ((0.0, 0), (0.0, 0));
+        for k in 0..64 {
+            let d = place(f64::from(k)*0.0981748+0.01);
+            let clock = Instant::now();
+            let f = pair(&d, &other, &mut WarmStart::default());
+            let t = clock.elapsed().as_secs_f64()*1e6;
+            if f.distance > 0.0 { apart.0 += t; apart.1 += 1 } else { over.0 += t; over.1 += 1 }
+        }
+        n += 1;
+        println!("{n} apart {:.1} us over {:.1} us ({}) e {:?} {:?}", apart.0/apart.1 as f64, over.0/over.1 as f64, over.1, torus.shape().exponents(), other.shape().shape());
+    }
+}

@@ -22,14 +22,12 @@ pub(super) fn nearest(
 ) -> Result<Contact, InvalidShape> {
     let content = content * size(torus);
     let width = TAU / FIRST as f64;
-    // off the seams, where the slice is that of a corner for small ε2
-    let first = |k: usize| (k as f64 + 0.5) * width;
     let touch = |angle: f64, start: &mut WarmStart| {
         Slice::new(torus, angle).map(|slice| slice.touch(torus, body, start))
     };
     let mut around: Vec<Touch> = Vec::with_capacity(FIRST + 1);
-    for k in 0..FIRST {
-        let found = touch(first(k), start)?;
+    for slice in Slice::around(torus, FIRST)? {
+        let found = slice.touch(torus, body, start);
         if found.contact.distance <= 0.0 {
             return Ok(found.contact);
         }

@@ -7,8 +7,11 @@
 //! directions (`depth`).
 
 mod apart;
+mod blocked;
 mod depth;
+mod directions;
 mod foot;
+mod settle;
 mod slices;
 
 use super::{Contact, Convex, WarmStart};
@@ -34,7 +37,7 @@ pub fn ring(torus: &Posed<Supertoroid>, body: &Posed<Convex>) -> Result<Contact,
     let mut start = WarmStart::default();
     match apart::nearest(torus, body, apart::CONTENT, &mut start)? {
         found if found.distance > 0.0 => Ok(found),
-        touching => depth::depth(torus, body, touching),
+        _ => depth::depth(torus, body),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::numeric::superellipse::weighted;
 use crate::shape::{InvalidShape, Posed, Superellipsoid, Supertoroid};
 use crate::{Pose, Vector};
 use nalgebra::{Translation3, UnitQuaternion};
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Thickness of a slice relative to its smaller half width: no slice has none in the pair's query.
 const THIN: f64 = 1e-10;
@@ -50,6 +50,16 @@ fn spoke(shape: &Supertoroid, angle: f64) -> [[f64; 2]; 2] {
 }
 
 impl Slice {
+    /// The slices at the middles of so many equal intervals.
+    pub(super) fn around(
+        torus: &Posed<Supertoroid>,
+        count: usize,
+    ) -> Result<Vec<Self>, InvalidShape> {
+        let width = TAU / count as f64;
+        // off the seams, where the slice is that of a corner for small ε2
+        (0..count).map(|k| Self::new(torus, (k as f64 + 0.5) * width)).collect()
+    }
+
     pub(super) fn new(torus: &Posed<Supertoroid>, angle: f64) -> Result<Self, InvalidShape> {
         let shape = torus.shape();
         let [[x, y], [to_x, to_y]] = spoke(shape, angle);
@@ -62,6 +72,14 @@ impl Slice {
         let disc = Posed::new(Convex::new(disc)?, torus.pose() * place)?;
         let velocity = torus.pose().rotation * Vector::new(to_x, to_y, 0.0);
         Ok(Self { angle, disc, length, velocity })
+    }
+
+    /// True where the balls around the slice and a body are apart.
+    pub(super) fn clear_of(&self, body: &Posed<Convex>) -> bool {
+        let apart = body.pose().translation.vector - self.disc.pose().translation.vector;
+        // a body lies within the box of its semi-axes
+        let reach = |b: &Posed<Convex>| Vector::from(b.shape().shape().semi_axes()).norm();
+        apart.norm() > reach(&self.disc) + reach(body)
     }
 
     /// The contact with a body. The slice is A.
