@@ -17,4 +17,5 @@ mod witness;
 
 pub use convex::Convex;
 pub use derivative::{BodyDerivative, differentiate};
+pub(super) use query::pair_by_cells;
 pub use query::{Contact, WarmStart, certify, intersect, pair};

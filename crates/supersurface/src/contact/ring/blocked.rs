@@ -21,6 +21,8 @@ pub(super) struct Blocked<'a> {
     body: &'a Posed<Convex>,
     /// Those that blocked last are asked first.
     slices: Vec<(Slice, WarmStart)>,
+    /// How often slices were asked.
+    pub(super) asked: usize,
 }
 
 impl<'a> Blocked<'a> {
@@ -30,7 +32,7 @@ impl<'a> Blocked<'a> {
         slices: &[Slice],
     ) -> Self {
         let slices = slices.iter().map(|slice| (*slice, WarmStart::default())).collect();
-        Self { torus, body, slices }
+        Self { torus, body, slices, asked: 0 }
     }
 
     /// One more slice to ask.
@@ -68,6 +70,7 @@ impl<'a> Blocked<'a> {
         if slice.clear_of(&body) {
             return f64::INFINITY;
         }
+        self.asked += 1;
         let contact = slice.touch(self.torus, &body, start).contact;
         // a single direction is only tried, a cell is proven
         spread * length + if spread > 0.0 { contact.bounds[1] } else { contact.distance }

@@ -18,12 +18,17 @@ use crate::{Direction, Point, Vector};
 /// Slices at first, and with those that are added where a body slips between them.
 const SLICES: usize = 64;
 const MOST_SLICES: usize = 512;
-/// Cells after which the bounds are what they are.
-const MOST: usize = 400;
+/// Cells, and questions to slices, after which the bounds are what they are.
+const MOST: usize = 300;
+const MOST_ASKED: usize = 15_000;
 /// The depth is shown to be at least this share of what was found, if the cells last.
-const CONTENT: f64 = 0.98;
+const CONTENT: f64 = 0.95;
 /// Directions out of the ring's hull that are tried first.
 const OUTWARD: usize = 3;
+/// Directions that lead out after this many times the best length are followed at first.
+const AROUND: f64 = 1.15;
+/// How often the best is taken up again.
+const POLISHES: usize = 20;
 /// Shorter translations have no direction, relative to the ring's size.
 const NONE: f64 = 1e-12;
 
@@ -51,20 +56,28 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn solve(&mut self) -> Result<Contact, InvalidShape> {
-        let ways = Cell::all().into_iter().flat_map(|cell| cell.quarters()).map(|cell| cell.way());
-        let mut outward: Vec<(f64, Vector)> = ways.map(|way| (self.outward(&way), way)).collect();
+        let ways = || Cell::all().into_iter().flat_map(|c| c.quarters()).map(|c| c.way());
+        let mut outward: Vec<(f64, Vector)> = ways().map(|way| (self.outward(&way), way)).collect();
         outward.sort_by(|p, q| p.0.total_cmp(&q.0));
         let (sure, way) = outward[0];
-        let mut settled = None;
+        let mut known = Vec::new();
         for (length, way) in &outward[..OUTWARD] {
-            let found = self.settling.settle(way * *length, settled.as_ref())?;
-            settled = found.or(settled);
+            known.extend(self.settling.settle(way * *length, &known)?);
         }
-        let by = way * sure;
-        let mut best = match settled.filter(|settled| settled.by.norm() < sure) {
-            Some(settled) => settled,
-            None => self.settling.at(by)?,
+        let mut best = self.settling.at(way * sure)?;
+        let shorter = |best: &mut Parting, known: &[Parting]| {
+            for found in known {
+                if found.by.norm() < best.by.norm() {
+                    *best = *found;
+                }
+            }
         };
+        shorter(&mut best, &known);
+        // minima next to each other are told apart by where they lead, not by the directions' own lengths
+        for way in ways() {
+            self.follow(&mut known, &way, 0.0, AROUND * best.by.norm())?;
+            shorter(&mut best, &known);
+        }
         let mut queue = Cell::all();
         let mut open: Vec<(f64, Cell)> = Vec::new();
         let mut seen = 0;
@@ -73,16 +86,26 @@ impl Search<'_> {
             let (way, goal) = (cell.way(), CONTENT * best.by.norm());
             let reach = self.blocked.until(&way, cell.spread(), 0.0, goal);
             if reach < goal {
-                if let Some(length) = self.exit(&way, reach, best.by.norm())? {
-                    self.improve(&mut best, way * length)?;
-                }
+                self.follow(&mut known, &way, reach, best.by.norm())?;
+                shorter(&mut best, &known);
                 open.push((reach, cell));
             }
             let goal = CONTENT * best.by.norm();
             open.retain(|(reach, _)| *reach < goal);
-            if queue.is_empty() && seen < MOST {
+            if queue.is_empty() && seen < MOST && self.blocked.asked < MOST_ASKED {
                 let least = (0..open.len()).min_by(|i, j| open[*i].0.total_cmp(&open[*j].0));
                 queue.extend(least.map(|k| open.swap_remove(k).1.quarters()).into_iter().flatten());
+            }
+        }
+        // slow ones were not at their end
+        for _ in 0..POLISHES {
+            let length = best.by.norm();
+            match self.settling.settle(best.by, &[])? {
+                Some(found) if found.by.norm() < length => best = found,
+                _ => break,
+            }
+            if length - best.by.norm() <= NONE * size(self.torus) {
+                break;
             }
         }
         let length = best.by.norm();
@@ -105,10 +128,17 @@ impl Search<'_> {
         far.dot(way).max(0.0)
     }
 
-    /// Replaces a parting by that to which a translation settles, if that is shorter.
-    fn improve(&mut self, best: &mut Parting, from: Vector) -> Result<(), InvalidShape> {
-        if let Some(found) = self.settling.settle(from, Some(best))? {
-            *best = found;
+    /// Follows a direction that is blocked up to `reach` out of the ring, if that takes less than `limit`, and adds to
+    /// what is known where that settles.
+    fn follow(
+        &mut self,
+        known: &mut Vec<Parting>,
+        way: &Vector,
+        reach: f64,
+        limit: f64,
+    ) -> Result<(), InvalidShape> {
+        if let Some(length) = self.exit(way, reach, limit)? {
+            known.extend(self.settling.settle(way * length, known)?);
         }
         Ok(())
     }
@@ -126,7 +156,7 @@ impl Search<'_> {
             if touch.contact.distance >= -1e-3 * limit {
                 return Ok(Some(reach));
             }
-            if self.blocked.count() >= MOST_SLICES {
+            if self.blocked.count() >= MOST_SLICES || self.blocked.asked > MOST_ASKED {
                 return Ok(None);
             }
             self.blocked.add(Slice::new(self.torus, touch.angle)?);

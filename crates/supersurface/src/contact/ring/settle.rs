@@ -11,8 +11,15 @@ use crate::shape::{InvalidShape, Posed, Supertoroid};
 use crate::{Pose, Vector};
 use std::f64::consts::{PI, TAU};
 
+/// Questions to slices after which no more settles.
+const MOST_ASKED: usize = 20_000;
 /// Steps before the search is content with what parts.
 const STEPS: usize = 60;
+/// At every so many steps it goes on to where they lead, if they shrink by a factor between these.
+const EVERY: usize = 4;
+const LONG: [f64; 2] = [0.3, 0.98];
+/// Pushes at the end out of a slice that still overlaps.
+const PUSHES: usize = 8;
 /// A translation has settled where it moves by this at most, relative to the ring's size: its length has by the square.
 const SETTLED: f64 = 1e-8;
 /// A settled one may leave an overlap of this, relative to the ring's size.
@@ -40,6 +47,8 @@ pub(super) struct Settling<'a> {
     /// The contact with each slice when it was last asked, and how far the body moved since.
     touches: Vec<(Touch, f64)>,
     starts: Vec<WarmStart>,
+    /// How often slices were asked.
+    asked: usize,
 }
 
 impl<'a> Settling<'a> {
@@ -53,7 +62,7 @@ impl<'a> Settling<'a> {
         let half = PI / slices.len() as f64;
         let ways = slices.iter().map(|s| 2.0 * way(torus.shape(), s.angle, half)).collect();
         let starts = vec![WarmStart::default(); slices.len()];
-        Self { torus, body, slices, size, ways, touches: Vec::new(), starts }
+        Self { torus, body, slices, size, ways, touches: Vec::new(), starts, asked: 0 }
     }
 
     /// The body after a translation.
@@ -61,33 +70,63 @@ impl<'a> Settling<'a> {
         self.body.moved(&Pose::translation(by.x, by.y, by.z))
     }
 
-    /// Where a translation settles, if that is shorter than what is `known` and parts.
+    /// Where a translation settles, if that parts and is none of those that are `known`. `None` as well once slices were
+    /// asked too often.
     pub(super) fn settle(
         &mut self,
         from: Vector,
-        known: Option<&Parting>,
+        known: &[Parting],
     ) -> Result<Option<Parting>, InvalidShape> {
         let mut by = from;
         let mut moved = f64::INFINITY;
-        for _ in 0..STEPS {
-            let planes: Vec<Plane> = self.touches_at(&by, moved)?.iter().map(|t| plane(t, &by)).collect();
-            let Some(next) = foot(&planes) else { return Ok(None) };
-            moved = (next - by).norm();
-            by = next;
+        let mut last: Option<Vector> = None;
+        for step in 0..STEPS {
+            if self.asked > MOST_ASKED {
+                return Ok(None);
+            }
+            let touches = self.touches_at(&by, moved)?;
+            let planes: Vec<Plane> = touches.iter().map(|t| plane(t, &by)).collect();
+            let mut move_by = match foot(&planes) {
+                Some(next) => next - by,
+                None => self.outward(&touches),
+            };
+            // steps that shrink by the same factor go on to where they lead
+            if let Some(last) = last.filter(|_| step % EVERY == EVERY - 1) {
+                let factor = move_by.dot(&last) / last.norm_squared();
+                if (LONG[0]..LONG[1]).contains(&factor) {
+                    move_by /= 1.0 - factor;
+                }
+            }
+            moved = move_by.norm();
+            by += move_by;
+            last = Some(move_by);
             let again = |known: &Parting| (by - known.by).norm() <= KNOWN * moved;
-            if moved <= NEAR * self.size && known.is_some_and(again) {
+            if moved <= NEAR * self.size && known.iter().any(again) {
                 return Ok(None);
             }
             if moved <= SETTLED * self.size {
                 break;
             }
         }
-        if known.is_some_and(|known| by.norm() >= known.by.norm()) {
-            return Ok(None);
+        let mut found = self.touched(by, moved)?;
+        for _ in 0..PUSHES {
+            if found.touch.contact.distance >= -TOUCHING * self.size {
+                break;
+            }
+            let push = self.outward(&[found.touch]);
+            found = self.touched(found.by + push, push.norm())?;
         }
-        let found = self.touched(by, moved)?;
         let parts = found.touch.contact.distance >= -TOUCHING * self.size;
         Ok(parts.then_some(found))
+    }
+
+    /// Out of the slice that overlaps most.
+    fn outward(&self, touches: &[Touch]) -> Vector {
+        let distance = |t: &Touch| t.contact.distance;
+        let worst = touches.iter().min_by(|p, q| distance(p).total_cmp(&distance(q)));
+        worst.map_or_else(Vector::zeros, |t| {
+            t.contact.normal.into_inner() * (0.5 * TOUCHING * self.size - distance(t)).max(0.0)
+        })
     }
 
     /// A translation with the contact that it leads to.
@@ -113,6 +152,7 @@ impl<'a> Settling<'a> {
         let body = self.moved(by);
         let count = self.slices.len();
         if !moved.is_finite() {
+            self.asked += count;
             self.touches.clear();
             for (slice, start) in self.slices.iter().zip(&mut self.starts) {
                 self.touches.push((slice.touch(self.torus, &body, start), 0.0));
@@ -124,6 +164,7 @@ impl<'a> Settling<'a> {
                 if touch.contact.distance - *since <= self.ways[k] {
                     *touch = self.slices[k].touch(self.torus, &body, &mut self.starts[k]);
                     *since = 0.0;
+                    self.asked += 1;
                 }
             }
         }

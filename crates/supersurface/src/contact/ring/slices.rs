@@ -5,7 +5,8 @@
 //! A point `s P` of it moves with the angle by `s P'`, so that the distance of a body from the slice changes by
 //! `-n·P' s` for the witness point `s P` and the normal `n`: the minima over the angle are roots of that.
 
-use crate::contact::{Contact, Convex, WarmStart, pair};
+use crate::contact::pair::pair_by_cells;
+use crate::contact::{Contact, Convex, WarmStart};
 use crate::numeric::superellipse::weighted;
 use crate::shape::{InvalidShape, Posed, Superellipsoid, Supertoroid};
 use crate::{Pose, Vector};
@@ -14,6 +15,8 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Thickness of a slice relative to its smaller half width: no slice has none in the pair's query.
 const THIN: f64 = 1e-10;
+/// Cells of directions that may be looked at for the depth of a body in one slice, of which many are asked.
+const CELLS: usize = 300;
 /// Steps of the search for a root, which halves the interval at least every second time.
 const ROOT_STEPS: usize = 60;
 /// A minimum is found where the interval's ends can differ by this at most, relative to the ring's size.
@@ -89,7 +92,7 @@ impl Slice {
         body: &Posed<Convex>,
         start: &mut WarmStart,
     ) -> Touch {
-        let contact = pair(&self.disc, body, start);
+        let contact = pair_by_cells(&self.disc, body, start, CELLS);
         let local = torus.to_local(&contact.witnesses[0]);
         let along = local.x.hypot(local.y) / self.length;
         let slope = -along * contact.normal.dot(&self.velocity);
