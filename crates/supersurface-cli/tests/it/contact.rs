@@ -127,8 +127,7 @@ fn a_ring_and_a_body_answer_in_both_orders() {
 
 #[test]
 fn other_members_are_refused_with_what_to_do() {
-    let toroid =
-        r#"{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 3, "exponents": [2.5, 1]}"#;
+    let toroid = r#"{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 3, "exponents": [2.5, 1]}"#;
     let sharp = r#"{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [2.5, 1]}"#;
     let cup =
         boxed(0.0).replace('}', r#", "deformations": [{"type": "taper", "slopes": [0.2, 0.2]}]}"#);

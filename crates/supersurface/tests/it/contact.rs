@@ -3,17 +3,14 @@
 #![allow(clippy::print_stdout)]
 
 use std::env;
-use std::f64::consts::PI;
 
 use supersurface::contact::{
-    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair, ring, sphere,
+    Contact, Convex, WarmStart, certify, contacts, differentiate, intersect, pair,
 };
-use supersurface::measure::ClosestFinder;
-use supersurface::mesh::{Spacing, supertoroid_grid};
 use supersurface::nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
-use supersurface::shape::{Implicit, Parametric, Posed, Superellipsoid, Supertoroid, SupportMap};
-use supersurface::{Direction, Point, Pose, Vector};
+use supersurface::shape::{Implicit, Posed, Superellipsoid, SupportMap};
+use supersurface::{Direction, Pose, Vector};
 
 pub(crate) fn direction(random: &mut Stream) -> Direction {
     Direction::new_normalize(Vector::from_fn(|_, _| random.normal()))

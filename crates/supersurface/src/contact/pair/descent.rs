@@ -70,7 +70,8 @@ struct Plan {
 /// The descent from `start`, a direction in both frames.
 #[inline]
 pub(super) fn descend(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let mut here = Minimum { normal: *start, expansion: Expansion::NONE, settled: false, slack: 0.0 };
+    let mut here =
+        Minimum { normal: *start, expansion: Expansion::NONE, settled: false, slack: 0.0 };
     dispatch(Descent { pair, here: &mut here });
     here
 }

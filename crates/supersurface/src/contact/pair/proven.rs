@@ -92,8 +92,7 @@ mod tests {
             let axes = [draw(0.01, 0.1), draw(0.01, 0.1), draw(0.01, 0.1)];
             let b = convex(axes, [draw(0.05, 1.9), draw(0.05, 1.9)]);
             let mut pose = |step: f64| {
-                let mut vector =
-                    |s: f64| Vector::new(draw(-s, s), draw(-s, s), draw(-s, s));
+                let mut vector = |s: f64| Vector::new(draw(-s, s), draw(-s, s), draw(-s, s));
                 Pose::new(vector(0.01 * step), vector(step))
             };
             let (first, by) = (pose(2.0), pose(0.1));

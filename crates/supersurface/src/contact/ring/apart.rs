@@ -37,8 +37,8 @@ pub(super) fn nearest(
     let mut best = around[0];
     for pair in around.windows(2) {
         let [low, high] = [&pair[0], &pair[1]];
-        let bound = low.contact.distance.min(high.contact.distance)
-            - way(torus.shape(), low.angle, width);
+        let bound =
+            low.contact.distance.min(high.contact.distance) - way(torus.shape(), low.angle, width);
         if low.slope < 0.0 && high.slope >= 0.0 && bound < best.contact.distance {
             let found = minimum(torus, body, [low, high], start)?;
             if found.contact.distance < best.contact.distance {

@@ -8,8 +8,12 @@ use crate::contact::{Convex, WarmStart};
 use crate::shape::{Posed, Supertoroid};
 use crate::{Pose, Vector};
 
+/// Questions to slices after which nothing more is shown.
+const MOST_ASKED: usize = 10_000;
+/// Slices, with those that are added.
+const MOST_SLICES: usize = 512;
 /// A slice carries on where it blocks this much farther at least, relative to the length that is asked for.
-const FARTHER: f64 = 1e-6;
+const FARTHER: f64 = 1e-3;
 /// The end of what a slice blocks is found to this, relative to the same.
 const FOUND: f64 = 1e-4;
 /// Steps of the search for that end.
@@ -22,7 +26,7 @@ pub(super) struct Blocked<'a> {
     /// Those that blocked last are asked first.
     slices: Vec<(Slice, WarmStart)>,
     /// How often slices were asked.
-    pub(super) asked: usize,
+    asked: usize,
 }
 
 impl<'a> Blocked<'a> {
@@ -40,15 +44,16 @@ impl<'a> Blocked<'a> {
         self.slices.insert(0, (slice, WarmStart::default()));
     }
 
-    pub(super) fn count(&self) -> usize {
-        self.slices.len()
+    /// True where slices were asked too often, or are too many.
+    pub(super) fn exhausted(&self) -> bool {
+        self.asked >= MOST_ASKED || self.slices.len() >= MOST_SLICES
     }
 
     /// Up to which length of a translation, but no more than `limit`, the ring is shown to block all unit directions
     /// within `spread` of one, given that it does so up to `reach`.
     pub(super) fn until(&mut self, way: &Vector, spread: f64, reach: f64, limit: f64) -> f64 {
         let mut reach = reach;
-        'further: while reach < limit {
+        'further: while reach < limit && self.asked < MOST_ASKED {
             for place in 0..self.slices.len() {
                 let end = self.slice_until(place, way, spread, [reach, limit]);
                 if end > reach + FARTHER * limit {

@@ -12,15 +12,13 @@ use super::settle::{Parting, Settling};
 use super::size;
 use super::slices::Slice;
 use crate::contact::{Contact, Convex, WarmStart};
-use crate::shape::{InvalidShape, Posed, SupportMap, Supertoroid};
+use crate::shape::{InvalidShape, Posed, Supertoroid, SupportMap};
 use crate::{Direction, Point, Vector};
 
-/// Slices at first, and with those that are added where a body slips between them.
+/// Slices at first; others are added where a body slips between them.
 const SLICES: usize = 64;
-const MOST_SLICES: usize = 512;
-/// Cells, and questions to slices, after which the bounds are what they are.
+/// Cells after which the bounds are what they are.
 const MOST: usize = 300;
-const MOST_ASKED: usize = 15_000;
 /// The depth is shown to be at least this share of what was found, if the cells last.
 const CONTENT: f64 = 0.95;
 /// Directions out of the ring's hull that are tried first.
@@ -92,7 +90,7 @@ impl Search<'_> {
             }
             let goal = CONTENT * best.by.norm();
             open.retain(|(reach, _)| *reach < goal);
-            if queue.is_empty() && seen < MOST && self.blocked.asked < MOST_ASKED {
+            if queue.is_empty() && seen < MOST && !self.blocked.exhausted() {
                 let least = (0..open.len()).min_by(|i, j| open[*i].0.total_cmp(&open[*j].0));
                 queue.extend(least.map(|k| open.swap_remove(k).1.quarters()).into_iter().flatten());
             }
@@ -156,7 +154,7 @@ impl Search<'_> {
             if touch.contact.distance >= -1e-3 * limit {
                 return Ok(Some(reach));
             }
-            if self.blocked.count() >= MOST_SLICES || self.blocked.asked > MOST_ASKED {
+            if self.blocked.exhausted() {
                 return Ok(None);
             }
             self.blocked.add(Slice::new(self.torus, touch.angle)?);

@@ -45,8 +45,7 @@ fn nearest(planes: &[Plane]) -> Option<(Vector, Vec<Plane>)> {
         let on: Vec<Plane> =
             (0..planes.len()).filter(|k| chosen >> k & 1 == 1).map(|k| planes[k]).collect();
         let Some(at) = meeting(&on) else { continue };
-        let inside =
-            planes.iter().all(|p| p.missed(&at) <= 1e-12 * (at.norm() + p.offset.abs()));
+        let inside = planes.iter().all(|p| p.missed(&at) <= 1e-12 * (at.norm() + p.offset.abs()));
         if inside && best.as_ref().is_none_or(|(other, _)| at.norm() < other.norm()) {
             best = Some((at, on));
         }
@@ -87,7 +86,11 @@ mod tests {
 
     #[test]
     fn a_plane_an_edge_and_a_corner() {
-        let [x, y, z] = [plane([1.0, 0.0, 0.0], 1.0), plane([0.0, 1.0, 0.0], 2.0), plane([0.0, 0.0, -1.0], 3.0)];
+        let [x, y, z] = [
+            plane([1.0, 0.0, 0.0], 1.0),
+            plane([0.0, 1.0, 0.0], 2.0),
+            plane([0.0, 0.0, -1.0], 3.0),
+        ];
         assert_eq!(foot(&[]), None);
         assert_eq!(foot(&[x]), Some(Vector::new(1.0, 0.0, 0.0)));
         assert_eq!(foot(&[y, x]), Some(Vector::new(1.0, 2.0, 0.0)));

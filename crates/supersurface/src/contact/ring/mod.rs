@@ -17,7 +17,17 @@ mod slices;
 use super::{Contact, Convex, WarmStart};
 use crate::shape::{InvalidShape, Posed, Supertoroid};
 
-/// The contact of a ring with a convex body. The ring is A.
+/// The contact of a ring with a convex body, in metres and in the world. The ring is A.
+///
+/// Where they overlap, the distance is minus the length of the shortest translation that was found to part them, out of the
+/// ring or into its hole, and the normal its direction: where two walls of the hole hold the body, it is that of
+/// no surface. For a ball it is the closest point's distance less the radius as long as the ball, moved by that,
+/// is clear of the other side of the hole; if it is not, it has to go farther.
+///
+/// Bounds are a thousandth of the ring's size wide at most where they are apart. A depth is shown to be at least 0.95
+/// of what was found where 300 cells of directions and 10,000 questions to slices suffice; else the bound is what they show. That it
+/// is no more than was found is shown for a translation a thousandth longer. What is not guaranteed: that no shorter
+/// translation exists between the bounds; one through a narrow gap can be missed.
 ///
 /// Fails for a section that is not convex (ε1 above 2).
 ///

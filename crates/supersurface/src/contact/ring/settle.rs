@@ -12,12 +12,12 @@ use crate::{Pose, Vector};
 use std::f64::consts::{PI, TAU};
 
 /// Questions to slices after which no more settles.
-const MOST_ASKED: usize = 20_000;
+const MOST_ASKED: usize = 10_000;
 /// Steps before the search is content with what parts.
-const STEPS: usize = 60;
+const STEPS: usize = 200;
 /// At every so many steps it goes on to where they lead, if they shrink by a factor between these.
 const EVERY: usize = 4;
-const LONG: [f64; 2] = [0.3, 0.98];
+const LONG: [f64; 2] = [0.3, 0.9999];
 /// Pushes at the end out of a slice that still overlaps.
 const PUSHES: usize = 8;
 /// A translation has settled where it moves by this at most, relative to the ring's size: its length has by the square.
