@@ -9,7 +9,7 @@ use crate::shape::{Posed, Supertoroid};
 use crate::{Pose, Vector};
 
 /// Questions to slices after which nothing more is shown.
-const MOST_ASKED: usize = 10_000;
+const MOST_ASKED: usize = 100_000;
 /// Slices, with those that are added.
 const MOST_SLICES: usize = 512;
 /// A slice carries on where it blocks this much farther at least, relative to the length that is asked for.

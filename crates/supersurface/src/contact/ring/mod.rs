@@ -25,7 +25,7 @@ use crate::shape::{InvalidShape, Posed, Supertoroid};
 /// is clear of the other side of the hole; if it is not, it has to go farther.
 ///
 /// Bounds are a thousandth of the ring's size wide at most where they are apart. A depth is shown to be at least 0.95
-/// of what was found where 300 cells of directions and 10,000 questions to slices suffice; else the bound is what they show. That it
+/// of what was found where 300 cells of directions and 100,000 questions to slices suffice; else the bound is what they show. That it
 /// is no more than was found is shown for a translation a thousandth longer. What is not guaranteed: that no shorter
 /// translation exists between the bounds; one through a narrow gap can be missed.
 ///

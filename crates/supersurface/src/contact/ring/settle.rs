@@ -12,7 +12,7 @@ use crate::{Pose, Vector};
 use std::f64::consts::{PI, TAU};
 
 /// Questions to slices after which no more settles.
-const MOST_ASKED: usize = 10_000;
+const MOST_ASKED: usize = 40_000;
 /// Steps before the search is content with what parts.
 const STEPS: usize = 200;
 /// At every so many steps it goes on to where they lead, if they shrink by a factor between these.
