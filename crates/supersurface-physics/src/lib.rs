@@ -5,7 +5,7 @@
 //! | a shape of a surface, of a body of several parts | [`shape()`], [`compound`] |
 //! | contacts in a rapier world | [`Dispatcher`], [`Dispatcher::check_world`] |
 //! | rapier's lengths for bodies of centimetres | [`integration_parameters`] |
-//! | a pile, a bin, a shelf | [`settle()`] |
+//! | a pile, a bin, a shelf; a whole scene | [`settle()`], [`settle_scene`] |
 //! | poses and points between nalgebra and glam | [`convert`] |
 //!
 //! Units are SI. [`parry`] and [`rapier`] are those that this crate is built with.
@@ -35,13 +35,12 @@
 //! The same in one call, for a ring on a floor:
 //!
 //! ```
-//! use supersurface::{Pose, shape::{Posed, Supertoroid}, surface::Surface};
+//! use supersurface::{Pose, combine::Part, shape::{Posed, Supertoroid}, surface::Surface};
 //! use supersurface_physics::{Falling, Ground, SettleOptions, settle};
 //! let ring = Surface::Supertoroid(Supertoroid::new([0.01; 3], 3.0, [1.0; 2])?);
 //! let body = Falling {
-//!     parts: vec![Posed::new(ring, Pose::identity())?],
+//!     parts: vec![Part::new("ring", Posed::new(ring, Pose::identity())?, 500.0)?],
 //!     start: Pose::translation(0.0, 0.0, 0.05),
-//!     density: 500.0,
 //!     friction: 0.5,
 //!     restitution: 0.0,
 //! };
@@ -68,5 +67,6 @@ pub use dispatch::{Dispatcher, UnsupportedPair};
 pub use pieces::Pieces;
 pub use settle::{
     Falling, Ground, Rest, SettleError, SettleOptions, Settled, integration_parameters, settle,
+    settle_scene,
 };
 pub use shape::{NoShape, compound, shape};

@@ -12,7 +12,7 @@ use crate::threads::MOST;
 #[derive(Debug, Args)]
 pub(crate) struct ContactArgs {
     /// First body: a shape (docs/shape.md) or a fit as a JSON file, - for standard input, or JSON itself. A convex
-    /// superellipsoid: both exponents at most 2, not deformed.
+    /// superellipsoid (both exponents at most 2), or, for one of both bodies, a supertoroid (ε1 at most 2); not deformed.
     #[arg(required_unless_present = "cases")]
     pub(super) a: Option<String>,
     /// Second body. The normal points towards it.
@@ -24,7 +24,8 @@ pub(crate) struct ContactArgs {
     /// Where to, with --cases: one JSON line a pair in the order of the list; - writes to standard output.
     #[arg(long, short, value_name = "FILE", requires = "cases")]
     pub(super) output: Option<PathBuf>,
-    /// Prove the distance to so many metres, where rounding and some seconds of search allow it.
+    /// Prove the distance to so many metres, where rounding and some seconds of search allow it. For two
+    /// superellipsoids.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     certify: Option<f64>,
     /// Time each pair of --cases, as the best of 5 batches of so many queries; 0 times nothing.

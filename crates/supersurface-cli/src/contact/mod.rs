@@ -1,4 +1,5 @@
-//! `supersurface contact`: how far apart two convex bodies are, or how deep in each other; one pair or many.
+//! `supersurface contact`: how far apart two convex bodies, or a ring and a convex body, are, or how deep in
+//! each other; one pair or many.
 
 mod args;
 mod body;

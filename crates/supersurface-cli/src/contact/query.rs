@@ -3,8 +3,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use supersurface::contact::{Contact, Convex, WarmStart, certify, pair};
+use supersurface::contact::{Contact, Convex, WarmStart, certify, pair, ring};
 use supersurface::shape::Posed;
+
+use super::body::Body;
 
 /// Batches of which the best counts.
 const BATCHES: u32 = 5;
@@ -17,8 +19,18 @@ pub(super) struct Query {
 
 impl Query {
     /// The contact; it fails where lengths overflow or vanish beside others.
-    pub(super) fn ask(&self, [a, b]: &[Posed<Convex>; 2]) -> Result<Contact, String> {
-        let contact = self.cold(a, b);
+    pub(super) fn ask(&self, bodies: &[Body; 2]) -> Result<Contact, String> {
+        let contact = match bodies {
+            [Body::Convex(a), Body::Convex(b)] => self.cold(a, b),
+            [Body::Ring(_), Body::Ring(_)] => {
+                return Err("of two supertoroids one must be replaced by convex parts".to_owned());
+            }
+            _ if self.tolerance.is_some() => {
+                return Err("--certify is for two superellipsoids".to_owned());
+            }
+            [Body::Ring(a), Body::Convex(b)] => ring(a, b).map_err(|e| e.to_string())?,
+            [Body::Convex(a), Body::Ring(b)] => turned(ring(b, a).map_err(|e| e.to_string())?),
+        };
         let points = contact.witnesses.iter().flat_map(|p| p.coords.iter());
         let numbers = points.chain(contact.normal.iter()).chain(&contact.bounds);
         match contact.distance.is_finite() && numbers.copied().all(f64::is_finite) {
@@ -50,4 +62,11 @@ impl Query {
             None => pair(a, b, &mut WarmStart::default()),
         }
     }
+}
+
+/// The contact of the same bodies in the other order.
+fn turned(mut contact: Contact) -> Contact {
+    contact.normal = -contact.normal;
+    contact.witnesses.reverse();
+    contact
 }

@@ -6,7 +6,7 @@ use supersurface::contact::common_point;
 use supersurface_io::{contact_json, write_png};
 
 use super::args::ContactArgs;
-use super::body::body;
+use super::body::{Body, body};
 use super::picture::picture;
 use super::query::Query;
 use super::text::text;
@@ -35,7 +35,10 @@ pub(super) fn run(args: &ContactArgs, given: [&str; 2], query: &Query) -> Result
     });
     let told = print(&match args.json {
         true => {
-            let common = common_point(&bodies[0], &bodies[1], &contact);
+            let common = match &bodies {
+                [Body::Convex(a), Body::Convex(b)] => common_point(a, b, &contact),
+                _ => None,
+            };
             contact_json(&contact, common, [first, second]) + "\n"
         }
         false => text([first, second], &bodies, &contact),

@@ -22,7 +22,9 @@ const FOCAL: f64 = 615.0;
 pub(super) fn run(args: &RandomArgs) -> Result<(), Failure> {
     if !(args.deviation >= 0.0 && args.deviation.is_finite()) {
         let given = args.deviation;
-        return Err(Failure::usage(format!("--deviation {given}: must be finite and not negative")));
+        return Err(Failure::usage(format!(
+            "--deviation {given}: must be finite and not negative"
+        )));
     }
     let mut progress = Progress::new(args.quiet);
     let (pool, fewer) = threads::pool(args.threads)?;

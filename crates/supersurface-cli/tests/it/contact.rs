@@ -106,9 +106,33 @@ fn the_picture_shows_both_bodies_and_the_points() {
 }
 
 #[test]
-fn other_members_are_refused_with_what_to_do() {
-    let toroid =
+fn a_ring_and_a_body_answer_in_both_orders() {
+    let ring =
         r#"{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 3, "exponents": [1, 1]}"#;
+    let ball = |x: f64| {
+        format!(
+            r#"{{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [1, 1], "position": [{x}, 0, 0]}}"#
+        )
+    };
+    for (x, distance) in [(0.0, 1.0), (0.5, 0.5), (1.25, -0.25), (5.25, 0.25)] {
+        let ball = ball(x);
+        let told = [[ring, &ball], [&ball, ring]].map(|[a, b]| {
+            let ran = run(&["contact", a, b, "--json"]).ended(0);
+            serde_json::from_str::<Value>(&ran.stdout).unwrap()
+        });
+        for contact in &told {
+            let found = contact["distance"].as_f64().unwrap();
+            assert!((found - distance).abs() < 1e-9, "{x} {contact}");
+        }
+        let normal = |k: usize| told[k]["normal"][0].as_f64().unwrap();
+        assert!((normal(0) + normal(1)).abs() < 1e-9, "{told:?}");
+    }
+    run(&["contact", ring, ring]).ended(3);
+}
+
+#[test]
+fn other_members_are_refused_with_what_to_do() {
+    let toroid = r#"{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 3, "exponents": [2.5, 1]}"#;
     let sharp = r#"{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [2.5, 1]}"#;
     let cup =
         boxed(0.0).replace('}', r#", "deformations": [{"type": "taper", "slopes": [0.2, 0.2]}]}"#);

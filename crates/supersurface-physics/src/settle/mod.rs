@@ -8,12 +8,15 @@
 //! stack may creep for longer than [`SettleOptions::time_limit`] and is then reported as not at rest.
 
 mod overlap;
+mod scene;
 mod world;
 
+pub use self::scene::settle_scene;
 pub use self::world::integration_parameters;
 
+use supersurface::combine::Part;
 use supersurface::mesh::Mesh;
-use supersurface::shape::{Plane, Posed};
+use supersurface::shape::Plane;
 use supersurface::surface::Surface;
 use supersurface::{Pose, Vector};
 
@@ -23,13 +26,11 @@ use crate::{UnsupportedPair, convert};
 /// A body that is to fall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Falling {
-    /// What it is made of: convex parts, rings, bent and twisted parts, in its own frame. Mass counts twice where parts
-    /// overlap.
-    pub parts: Vec<Posed<Surface>>,
+    /// What it is made of: convex parts, rings, bent and twisted parts, in its own frame, with their densities. Mass counts
+    /// twice where parts overlap.
+    pub parts: Vec<Part<Surface>>,
     /// Where it starts: its frame in the world, metres.
     pub start: Pose,
-    /// In kg/m³.
-    pub density: f64,
     /// Coefficient of friction, without unit, at least 0; that of two bodies is the mean.
     pub friction: f64,
     /// Coefficient of restitution in [0, 1]; that of two bodies is the mean.
@@ -164,13 +165,13 @@ pub enum SettleError {
 /// Fails for numbers out of range, for bodies without parts, and for exponents above 2.
 ///
 /// ```
-/// use supersurface::{Pose, shape::{Posed, Superellipsoid}, surface::Surface};
+/// use supersurface::{Pose, combine::Part, shape::{Posed, Superellipsoid}, surface::Surface};
 /// use supersurface_physics::{Falling, Ground, SettleOptions, settle};
 /// let tin = Surface::Superellipsoid(Superellipsoid::new([0.03, 0.03, 0.05], [0.2, 1.0])?);
+/// let part = Part::new("tin", Posed::new(tin, Pose::identity())?, 500.0)?;
 /// let drop = |height: f64| Falling {
-///     parts: vec![Posed::new(tin, Pose::identity()).unwrap()],
+///     parts: vec![part.clone()],
 ///     start: Pose::translation(0.0, 0.0, height),
-///     density: 500.0,
 ///     friction: 0.5,
 ///     restitution: 0.0,
 /// };
@@ -210,7 +211,9 @@ fn check(bodies: &[Falling], ground: &Ground, options: &SettleOptions) -> Result
         number(wrong.is_none(), what, wrong.unwrap_or_default(), "finite and below 1e6")
     };
     for body in bodies {
-        number(positive(body.density), "density", body.density, "positive and finite")?;
+        for density in body.parts.iter().map(Part::density) {
+            number(positive(density), "density", density, "positive and finite")?;
+        }
         pose(&body.start, "a number of a start pose")?;
     }
     let materials = bodies.iter().map(|b| (b.friction, b.restitution));

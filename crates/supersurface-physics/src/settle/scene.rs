@@ -25,7 +25,7 @@ pub fn settle_scene(scene: &mut Scene, options: &SettleOptions) -> Result<Settle
         .bodies
         .iter()
         .map(|body| Falling {
-            shape: body.shape.clone(),
+            parts: body.shape.parts().to_vec(),
             start: body.pose,
             friction: body.friction,
             restitution: 0.0,

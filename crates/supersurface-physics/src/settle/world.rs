@@ -54,8 +54,10 @@ impl Fall {
     ) -> Result<Self, SettleError> {
         let mut bodies = Vec::new();
         for (body, Falling { parts, .. }) in falling.iter().enumerate() {
-            let shapes: Result<Vec<_>, _> =
-                parts.iter().map(|p| Ok((from_pose(p.pose()), shape(p.shape())?))).collect();
+            let shapes: Result<Vec<_>, _> = parts
+                .iter()
+                .map(|p| Ok((from_pose(p.body().pose()), shape(p.body().shape())?)))
+                .collect();
             let shapes = shapes.map_err(|why| SettleError::Body { body, why })?;
             let boxes = shapes.iter().map(|(pose, s)| s.compute_aabb(pose));
             let Some(bounds) = boxes.reduce(|a, b| {
@@ -100,10 +102,10 @@ impl Fall {
                 .angular_damping(damping)
                 .soft_ccd_prediction(*half);
             let handle = world.insert_body(rigid);
-            for (pose, shape) in shapes {
+            for ((pose, shape), part) in shapes.iter().zip(&body.parts) {
                 let collider = ColliderBuilder::new(shape.clone())
                     .position(*pose)
-                    .density(body.density)
+                    .density(part.density())
                     .friction(body.friction)
                     .restitution(body.restitution)
                     .contact_skin(skin);

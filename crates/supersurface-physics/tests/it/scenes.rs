@@ -1,6 +1,7 @@
 //! Random bodies and grounds that several tests and the bench drop.
 
 use supersurface::Pose;
+use supersurface::combine::Part;
 use supersurface::nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{Posed, Superellipsoid};
@@ -18,10 +19,14 @@ pub(crate) fn turn(random: &mut Stream) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
 }
 
+/// A part of 800 kg/m³.
+pub(crate) fn part(surface: Surface, pose: Pose) -> Part<Surface> {
+    Part::new("part", Posed::new(surface, pose).unwrap(), 800.0).unwrap()
+}
+
 /// One part at the body's frame.
 pub(crate) fn falling(surface: Surface, start: Pose) -> Falling {
-    let parts = vec![Posed::new(surface, Pose::identity()).unwrap()];
-    Falling { parts, start, density: 800.0, friction: 0.5, restitution: 0.1 }
+    Falling { parts: vec![part(surface, Pose::identity())], start, friction: 0.5, restitution: 0.1 }
 }
 
 /// Ten superellipsoids of 2.4 to 9 cm over a bin of 22 cm.

@@ -5,6 +5,7 @@ mod closest;
 mod combined;
 mod conformance;
 mod contact;
+mod contact_ring;
 mod fit_generic;
 mod fit_turned;
 mod fit_views;

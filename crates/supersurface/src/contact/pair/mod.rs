@@ -19,4 +19,5 @@ mod witness;
 pub use common::common_point;
 pub use convex::Convex;
 pub use derivative::{BodyDerivative, differentiate};
+pub(super) use query::pair_by_cells;
 pub use query::{Contact, WarmStart, certify, intersect, pair};

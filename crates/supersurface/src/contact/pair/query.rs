@@ -75,6 +75,16 @@ pub fn pair(a: &Posed<Convex>, b: &Posed<Convex>, start: &mut WarmStart) -> Cont
     answer(a, b, start, CONTENT, CELLS).contact(a, b)
 }
 
+/// The same, with the bounds of a depth that so many cells of directions prove.
+pub(in crate::contact) fn pair_by_cells(
+    a: &Posed<Convex>,
+    b: &Posed<Convex>,
+    start: &mut WarmStart,
+    cells: usize,
+) -> Contact {
+    answer(a, b, start, CONTENT, cells).contact(a, b)
+}
+
 /// The same with bounds at most `tolerance` wide, in metres, where rounding and three million cells allow it. For
 /// depths it takes milliseconds rather than microseconds.
 pub fn certify(a: &Posed<Convex>, b: &Posed<Convex>, tolerance: f64) -> Contact {
