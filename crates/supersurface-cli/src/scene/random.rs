@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use supersurface::camera::Camera;
-use supersurface::scene::{DepthNoise, Scene, arrange, draw, look, turntable, visibility};
+use supersurface::scene::{Scene, arrange, draw, look, turntable, visibility};
 use supersurface_io::{SceneCamera, SceneExtras, read_things, write_scene, write_view};
 use supersurface_physics::{SettleOptions, settle_scene};
 
@@ -82,7 +82,7 @@ fn views(
     camera: &Camera,
     progress: &mut Progress,
 ) -> Result<Views, Failure> {
-    let noise: DepthNoise = args.noise.model(args.deviation);
+    let noise = args.noise.model(args.deviation);
     let mut views = Views { cameras: Vec::new(), shares: vec![0.0; scene.bodies.len()] };
     for (k, pose) in turntable(scene, camera, args.views.into()).into_iter().enumerate() {
         let name = format!("view_{k:03}");
@@ -93,7 +93,7 @@ fn views(
         write_view(&place, &seen, camera, &pose).map_err(Failure::output)?;
         let shown = visibility(scene, camera, &pose);
         views.shares.iter_mut().zip(shown).for_each(|(most, share)| *most = most.max(share));
-        views.cameras.push(SceneCamera { name, camera: *camera, pose });
+        views.cameras.push(SceneCamera { name, camera: camera.clone(), pose });
     }
     Ok(views)
 }
