@@ -11,9 +11,9 @@ use crate::{Pose, Vector};
 /// Questions to slices after which nothing more is shown.
 const MOST_ASKED: usize = 100_000;
 /// Slices, with those that are added.
-const MOST_SLICES: usize = 512;
+const MOST_SLICES: usize = 128;
 /// A slice carries on where it blocks this much farther at least, relative to the length that is asked for.
-const FARTHER: f64 = 1e-3;
+const FARTHER: f64 = 1e-5;
 /// The end of what a slice blocks is found to this, relative to the same.
 const FOUND: f64 = 1e-4;
 /// Steps of the search for that end.
@@ -44,9 +44,14 @@ impl<'a> Blocked<'a> {
         self.slices.insert(0, (slice, WarmStart::default()));
     }
 
-    /// True where slices were asked too often, or are too many.
+    /// True where slices were asked too often.
     pub(super) fn exhausted(&self) -> bool {
-        self.asked >= MOST_ASKED || self.slices.len() >= MOST_SLICES
+        self.asked >= MOST_ASKED
+    }
+
+    /// True where no more slices are taken.
+    pub(super) fn full(&self) -> bool {
+        self.slices.len() >= MOST_SLICES
     }
 
     /// Up to which length of a translation, but no more than `limit`, the ring is shown to block all unit directions

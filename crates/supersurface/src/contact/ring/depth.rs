@@ -25,6 +25,8 @@ const CONTENT: f64 = 0.95;
 const OUTWARD: usize = 3;
 /// Directions that lead out after this many times the best length are followed at first.
 const AROUND: f64 = 1.15;
+/// A direction has led out where no more than this share of its length still overlaps.
+const OUT: f64 = 1e-3;
 /// How often the best is taken up again.
 const POLISHES: usize = 20;
 /// Shorter translations have no direction, relative to the ring's size.
@@ -144,20 +146,23 @@ impl Search<'_> {
     /// The length, less than `limit`, at which a direction first leads out of the ring; slices are added where only
     /// those between block.
     fn exit(&mut self, way: &Vector, reach: f64, limit: f64) -> Result<Option<f64>, InvalidShape> {
-        let mut reach = reach;
+        let (mut reach, mut added) = (reach, false);
         loop {
+            let before = reach;
             reach = self.blocked.until(way, 0.0, reach, limit);
-            if reach >= limit {
+            if reach >= limit || self.blocked.exhausted() {
                 return Ok(None);
             }
             let touch = self.settling.at(way * reach)?.touch;
-            if touch.contact.distance >= -1e-3 * limit {
+            if touch.contact.distance >= -OUT * limit {
                 return Ok(Some(reach));
             }
-            if self.blocked.exhausted() {
+            // a slice that was added and leads no farther was not what blocks
+            if self.blocked.full() || (added && reach <= before) {
                 return Ok(None);
             }
             self.blocked.add(Slice::new(self.torus, touch.angle)?);
+            added = true;
         }
     }
 
