@@ -6,6 +6,7 @@ mod exit_status;
 mod fit;
 mod inputs;
 mod outputs;
+mod scene;
 mod shapes;
 mod shared;
 

@@ -59,8 +59,7 @@ fn search(bodies: &[&Posed<Convex>; 2]) -> Option<Point> {
         let steep = body.pose().rotation * body.shape().shape().gradient(&body.to_local(&middle));
         let steep = steep.try_normalize(0.0)?;
         let length = steep.dot(&(m * steep)).sqrt();
-        // not for NaN either
-        if !(length > 1e-15) {
+        if length.is_nan() || length <= 1e-15 {
             return None;
         }
         let step = m * steep / length;
