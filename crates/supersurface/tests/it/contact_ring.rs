@@ -206,9 +206,9 @@ fn depths_of_bodies_in_rings_part_them_and_nothing_shorter_does() {
     assert_eq!(shorter, 0, "shorter translations part");
 }
 
-/// A ball as a body of its own.
-fn ball(centre: Point, radius: f64) -> Posed<Convex> {
-    let shape = Superellipsoid::new([radius; 3], [1.0; 2]).unwrap();
+/// A ball as a body of its own; for another `exponent` than 1 almost one, which is not told by its closest point.
+fn ball(centre: Point, radius: f64, exponent: f64) -> Posed<Convex> {
+    let shape = Superellipsoid::new([radius; 3], [exponent; 2]).unwrap();
     let place = Pose::translation(centre.x, centre.y, centre.z);
     Posed::new(Convex::new(shape).unwrap(), place).unwrap()
 }
@@ -217,7 +217,7 @@ fn ball(centre: Point, radius: f64) -> Posed<Convex> {
 fn a_ball_in_a_ring_is_as_deep_as_its_closest_point_says() {
     let mut random = Stream::new(80, 0);
     let (mut checked, mut other, mut worst) = (0, 0, 0f64);
-    while checked < 40 {
+    while checked < 20 {
         let exponents = [random.between(0.1, 1.9), random.between(0.1, 1.9)];
         let axes = [0; 3].map(|_| random.between(0.5, 2.0));
         let shape = Supertoroid::new(axes, random.between(1.2, 5.0), exponents).unwrap();
@@ -229,11 +229,13 @@ fn a_ball_in_a_ring_is_as_deep_as_its_closest_point_says() {
         let after = centre - exact.normal.into_inner() * exact.distance;
         // moved into touch it may be in another part of the ring: then it has to go farther
         let there = sphere(&torus, &finder, &after, radius).unwrap().distance;
-        let found = ring(&torus, &ball(centre, radius)).unwrap();
+        let told = ring(&torus, &ball(centre, radius, 1.0)).unwrap();
+        let found = ring(&torus, &ball(centre, radius, 1.0 + 1e-10)).unwrap();
         let size = axes.into_iter().fold(0.0, f64::max) * (1.0 + shape.ring_ratio());
         assert!(found.distance <= exact.distance + 1e-9 * size, "{shape:?} {centre} {radius}");
         if exact.distance < 0.0 && there > -1e-9 * size {
             checked += 1;
+            assert!((told.distance - exact.distance).abs() < 1e-12 * size, "{told:?} {exact:?}");
             let error = (found.distance - exact.distance).abs() / size;
             worst = worst.max(error);
             // another minimum that is nearly as good
@@ -242,8 +244,10 @@ fn a_ball_in_a_ring_is_as_deep_as_its_closest_point_says() {
             assert!(low <= exact.distance && exact.distance <= high, "{found:?} {exact:?}");
         }
     }
-    println!("{other} of {checked} balls have another minimum, worst {worst:.1e} of the size");
-    assert!(other <= 4 && worst < 1e-3, "{other} {worst}");
+    println!(
+        "by directions {other} of {checked} balls have another minimum, worst {worst:.1e} of the size"
+    );
+    assert!(other <= 2 && worst < 1e-3, "{other} {worst}");
 }
 
 #[test]

@@ -3,10 +3,11 @@
 //! A supertoroid is the union of its slices (`slices`), which are convex for ε1 up to 2. The distance is the least over
 //! the slices of a convex pair's. Slices next to each other differ by at most the way of their outer edge, so that
 //! intervals of angles are bounded from below and only those that could hold something nearer are halved; the best
-//! is then refined (`apart`). Where the two overlap, the shortest translation that parts them is looked for over all
+//! is then refined (`apart`); a ball has a closest point (`ball`). Where the two overlap, the shortest translation that parts them is looked for over all
 //! directions (`depth`).
 
 mod apart;
+mod ball;
 mod blocked;
 mod depth;
 mod directions;
@@ -46,6 +47,9 @@ use crate::shape::{InvalidShape, Posed, Supertoroid};
 pub fn ring(torus: &Posed<Supertoroid>, body: &Posed<Convex>) -> Result<Contact, InvalidShape> {
     let section = torus.shape().exponents()[0];
     InvalidShape::check(section <= 2.0, "exponent ε1", section, "at most 2 for convex slices")?;
+    if let Some(found) = ball::ball(torus, body) {
+        return Ok(found);
+    }
     let mut start = WarmStart::default();
     match apart::nearest(torus, body, apart::CONTENT, &mut start)? {
         found if found.distance > 0.0 => Ok(found),
