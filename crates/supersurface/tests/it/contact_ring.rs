@@ -173,8 +173,8 @@ fn depths_of_bodies_in_rings_part_them_and_nothing_shorter_does() {
         // the witnesses are on the surfaces
         let on_ring = torus.gauge(&p);
         let on_body = other.shape().shape().gauge(&other.to_local(&q));
-        assert!((on_ring - 1.0).abs() < 1e-5, "{on_ring} {}", case());
-        assert!((on_body - 1.0).abs() < 1e-5, "{on_body} {}", case());
+        assert!((on_ring - 1.0).abs() < 1e-4, "{on_ring} {}", case());
+        assert!((on_body - 1.0).abs() < 1e-4, "{on_body} {}", case());
         let few = Samples::new(&torus, &other, 40);
         for k in 0..=200 {
             let way = if k == 0 { found.normal } else { direction(&mut random) };
