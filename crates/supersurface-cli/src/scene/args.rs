@@ -18,10 +18,55 @@ pub(crate) struct SceneArgs {
 pub(super) enum SceneCommand {
     /// Draws things, lets them fall until they lie still, looks at them and writes all of it.
     Random(RandomArgs),
+    /// Many such scenes for training. What a run that was cut off left is kept and completed by the next.
+    Dataset(DatasetArgs),
 }
 
 #[derive(Debug, Args)]
 pub(super) struct RandomArgs {
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    /// The same seed gives the same files.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Folder for the scene; it is made where it is missing.
+    #[arg(long, short, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+    /// Number of threads; results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
+    pub(super) threads: Option<u16>,
+    /// Print scene.json instead of a table.
+    #[arg(long)]
+    pub(super) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DatasetArgs {
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    /// Number of scenes.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) scenes: u32,
+    /// Seed of the first scene; the others follow.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Folder for the scenes, a new one or one of the same data set.
+    #[arg(long, short, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+    /// Number of threads; results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
+    pub(super) threads: Option<u16>,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// How a scene is made.
+#[derive(Debug, Args)]
+pub(super) struct MakeArgs {
     /// Number of bodies.
     #[arg(long, short = 'n', value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub(super) count: u16,
@@ -31,12 +76,6 @@ pub(super) struct RandomArgs {
     /// What is drawn: a TOML file (docs/scene.md), or household, members.
     #[arg(long, value_name = "NAME|FILE", default_value = "household")]
     pub(super) things: String,
-    /// The same seed gives the same files.
-    #[arg(long, default_value_t = 1)]
-    pub(super) seed: u64,
-    /// Folder for the scene; it is made where it is missing.
-    #[arg(long, short, value_name = "FOLDER")]
-    pub(super) output: PathBuf,
     /// What the scene is written as, beside our own JSON: all, or some of mjcf, urdf, sdf, usda, glb, obj, stl, ply.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     pub(super) formats: Vec<Format>,
@@ -49,15 +88,6 @@ pub(super) struct RandomArgs {
     /// Standard deviation of --noise gaussian, in metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.001)]
     pub(super) deviation: f64,
-    /// Number of threads; results do not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
-    pub(super) threads: Option<u16>,
-    /// Print scene.json instead of a table.
-    #[arg(long)]
-    pub(super) json: bool,
-    /// No progress on standard error.
-    #[arg(long, short)]
-    pub(super) quiet: bool,
 }
 
 /// How bodies lie.

@@ -1,6 +1,8 @@
 //! `supersurface scene`: makes scenes for simulators and for training.
 
 mod args;
+mod dataset;
+mod make;
 mod random;
 mod text;
 mod touches;
@@ -13,5 +15,6 @@ use crate::exit::Failure;
 pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
     match &args.command {
         SceneCommand::Random(args) => random::run(args),
+        SceneCommand::Dataset(args) => dataset::run(args),
     }
 }

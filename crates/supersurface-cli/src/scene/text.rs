@@ -1,15 +1,13 @@
 //! A scene in words.
 
 use std::fmt::Write;
-use std::path::PathBuf;
 
-use supersurface::scene::Scene;
-use supersurface_physics::Settled;
-
+use super::make::Made;
 use crate::numbers::fixed;
 
 /// A row a body, and what else is worth knowing.
-pub(super) fn text(scene: &Scene, settled: &Settled, shares: &[f64], files: &[PathBuf]) -> String {
+pub(super) fn text(made: &Made) -> String {
+    let Made { scene, settled, shares, files, .. } = made;
     let mut out = format!("{:<20} {:>9}  {:<24} {:>5}\n", "body", "mass g", "at mm", "seen");
     for (body, share) in scene.bodies.iter().zip(shares) {
         let at = body.pose.translation.vector.map(|v| 1e3 * v);

@@ -84,3 +84,32 @@ fn what_is_wrong_with_a_scene_is_said() {
     fs::write(&file, "").unwrap();
     run(&["scene", "random", "-o", text(&file)]).ended(5);
 }
+
+#[test]
+fn a_data_set_that_was_cut_off_is_completed_to_the_same_bytes() {
+    let [whole, cut] = ["dataset_whole", "dataset_cut"].map(scratch);
+    for folder in [&whole, &cut] {
+        let _ = fs::remove_dir_all(folder);
+    }
+    let make = |folder: &Path, more: &[&str]| {
+        let words = ["scene", "dataset", "--scenes", "3", "-n", "2", "--layout", "packed"];
+        let how = ["--things", "members", "--seed", "4", "--views", "1", "-o", text(folder)];
+        run(&[&words[..], &how[..], more].concat())
+    };
+    let told = make(&whole, &["--threads", "2"]).ended(0).stdout;
+    assert!(told.starts_with("3 scenes made, 0 were there"), "{told}");
+    make(&cut, &["--threads", "1"]).ended(0);
+    // as if it had been killed: a scene is not whole, another not begun, no list
+    fs::rename(cut.join("shard_000/scene_000001"), cut.join("shard_000/.part_000001")).unwrap();
+    fs::remove_file(cut.join("shard_000/.part_000001/scene.json")).unwrap();
+    fs::remove_dir_all(cut.join("shard_000/scene_000002")).unwrap();
+    fs::remove_file(cut.join("manifest.jsonl")).unwrap();
+    let told = make(&cut, &["--threads", "8"]).ended(0).stdout;
+    assert!(told.starts_with("2 scenes made, 1 were there"), "{told}");
+    assert!(files(&whole) == files(&cut));
+    let manifest = fs::read_to_string(whole.join("manifest.jsonl")).unwrap();
+    assert_eq!(manifest.lines().count(), 3);
+    // other arguments do not mix with what is there
+    let told = make(&cut, &["--noise", "none"]).ended(2).stderr;
+    assert!(told.contains("other arguments"), "{told}");
+}

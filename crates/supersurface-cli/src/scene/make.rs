@@ -1,0 +1,88 @@
+//! One scene: things drawn by lot, at rest, seen by a camera, as files in a folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use supersurface::camera::Camera;
+use supersurface::scene::{Recipe, Scene, arrange, draw, look, turntable, visibility};
+use supersurface_io::{SceneCamera, SceneExtras, read_things, write_scene, write_view};
+use supersurface_physics::{SettleOptions, Settled, settle_scene};
+
+use super::args::{MakeArgs, formats};
+use super::touches::touches;
+use crate::exit::Failure;
+
+/// Pixels and focal length of the depth camera.
+const SIZE: [usize; 2] = [640, 480];
+const FOCAL: f64 = 615.0;
+
+/// What was made.
+pub(super) struct Made {
+    pub(super) scene: Scene,
+    pub(super) settled: Settled,
+    /// The share of each body that any view shows of it.
+    pub(super) shares: Vec<f64>,
+    pub(super) files: Vec<PathBuf>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// What things are drawn from, once the other arguments are right.
+pub(super) fn recipes(args: &MakeArgs) -> Result<Vec<Recipe>, Failure> {
+    if !(args.deviation >= 0.0 && args.deviation.is_finite()) {
+        let given = args.deviation;
+        return Err(Failure::usage(format!(
+            "--deviation {given}: must be finite and not negative"
+        )));
+    }
+    read_things(&args.things).map_err(Failure::input)
+}
+
+/// Makes a folder where it is missing.
+pub(super) fn folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|e| Failure::output(format!("{}: {e}", path.display())))
+}
+
+/// Makes the scene of a seed in a folder; `say` is told what is being done.
+pub(super) fn make(
+    args: &MakeArgs,
+    things: &[Recipe],
+    seed: u64,
+    output: &Path,
+    mut say: impl FnMut(&'static str, String),
+) -> Result<Made, Failure> {
+    say("draw", format!("drawing {} bodies", args.count));
+    let bodies = draw(things, args.count.into(), seed).map_err(Failure::input)?;
+    let mut scene = arrange(bodies, args.layout.layout(), seed).map_err(Failure::input)?;
+    say("settle", "letting them fall".to_owned());
+    let settled = settle_scene(&mut scene, &SettleOptions::default()).map_err(Failure::input)?;
+    let mut warnings = Vec::new();
+    for (body, rest) in scene.bodies.iter().zip(&settled.bodies) {
+        if rest.lost {
+            warnings.push(format!("{} fell off: it is left out", body.name));
+        } else if !rest.at_rest {
+            warnings.push(format!("{} still moves", body.name));
+        }
+    }
+    let mut kept = settled.bodies.iter();
+    scene.bodies.retain(|_| kept.next().is_none_or(|rest| !rest.lost));
+    let middle = SIZE.map(|n| 0.5 * (n as f64 - 1.0));
+    let camera = Camera::new(SIZE, [FOCAL; 2], middle).map_err(Failure::input)?;
+    let noise = args.noise.model(args.deviation);
+    let (mut cameras, mut shares) = (Vec::new(), vec![0f64; scene.bodies.len()]);
+    for (k, pose) in turntable(&scene, &camera, args.views.into()).into_iter().enumerate() {
+        let name = format!("view_{k:03}");
+        say("look", format!("looking: view {} of {}", k + 1, args.views));
+        let seen = look(&scene, &camera, &pose, &noise, seed.wrapping_add(k as u64));
+        let place = output.join(&name);
+        folder(&place)?;
+        write_view(&place, &seen, &camera, &pose).map_err(Failure::output)?;
+        let shown = visibility(&scene, &camera, &pose);
+        shares.iter_mut().zip(shown).for_each(|(most, share)| *most = most.max(share));
+        cameras.push(SceneCamera { name, camera: camera.clone(), pose });
+    }
+    say("write", format!("writing {}", output.display()));
+    let extras = SceneExtras { cameras, touches: touches(&scene), ..SceneExtras::default() };
+    let files =
+        write_scene(output, &scene, &extras, &formats(&args.formats)).map_err(Failure::output)?;
+    Ok(Made { scene, settled, shares, files, warnings })
+}
