@@ -11,7 +11,7 @@ use crate::numeric::lanes::{Job, Lane, WIDTH, dispatch, exp, ln};
 use crate::numeric::superellipse::norm_of_logs;
 use crate::shape::Superellipsoid;
 
-/// Steps after which a ray is taken to have arrived: it takes about six.
+/// Steps after which a ray that neither arrived nor missed is taken to miss.
 const STEPS: usize = 60;
 /// A gauge this close to 1 is on the surface.
 const ON_SURFACE: f64 = 1e-14;

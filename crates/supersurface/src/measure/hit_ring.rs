@@ -12,7 +12,7 @@ use crate::shape::{Ray, Supertoroid};
 /// Intervals across the hole.
 const ACROSS: usize = 16;
 
-/// What [`first_hit`](super::first_hit) answers, in a tenth of the time: the first point of the ring along the ray, at
+/// What [`first_hit`](super::first_hit) answers, with fewer questions to the gauge: the first point of the ring along the ray, at
 /// most `max` metres from its origin.
 pub(crate) fn ring_hit(ring: &Supertoroid, ray: &Ray, max: f64) -> Option<Hit> {
     use crate::shape::Implicit;
