@@ -1,5 +1,5 @@
 //! Microseconds of the queries of convex bodies, on one core: pairs apart and overlapping, cold and warm, certified, with
-//! derivatives; a ring and a body; and 1,000 bodies, by the tree of their boxes and by all pairs.
+//! derivatives; rings and deformed bodies; and 1,000 bodies, by the tree of their boxes and by all pairs.
 //!
 //! `cargo bench -p supersurface --bench contact`; against peers: `compare/contact`.
 
@@ -9,14 +9,16 @@ use std::hint::black_box;
 
 use cpu_time::ProcessTime;
 use supersurface::contact::{
-    Convex, WarmStart, certify, contacts, differentiate, intersect, pair, ring,
+    Convex, Sliced, WarmStart, certify, contacts, differentiate, intersect, pair, solids,
 };
 use supersurface::nalgebra::{Translation3, UnitQuaternion};
 use supersurface::numeric::random::Stream;
 use supersurface::shape::{Posed, Superellipsoid, Supertoroid};
+use supersurface::surface::Solid;
 use supersurface::{Pose, Vector};
 
 const PAIRS: usize = 1_000;
+const SLICED: usize = 10;
 const BODIES: usize = 1_000;
 
 fn pose(random: &mut Stream, place: Vector) -> Pose {
@@ -59,16 +61,30 @@ fn main() {
              certify to 1e-6 {sure:9.1}"
         );
     }
-    let torus = Supertoroid::new([0.5; 3], 2.5, [1.0; 2]).unwrap();
-    let torus = Posed::new(torus, Pose::identity()).unwrap();
-    let around: Vec<Posed<Convex>> = (0..100)
-        .map(|_| {
-            let place = Vector::from_fn(|_, _| random.between(-3.0, 3.0));
-            body(&mut random, place)
-        })
-        .collect();
-    let rings = timed(100, |k| ring(&torus, &around[k]));
-    println!("ring and body {rings:.1} µs");
+    let solid = |shape: Solid, place: Vector, random: &mut Stream| {
+        Sliced::new(&Posed::new(shape, pose(random, place)).unwrap()).unwrap()
+    };
+    let core = |random: &mut Stream| Solid::from(*body(random, Vector::zeros()).shape().shape());
+    let kinds: [(&str, fn(Solid) -> Solid); 3] = [
+        ("whole", |s| s),
+        ("ring", |_| Solid::from(Supertoroid::new([0.3; 3], 2.5, [1.0; 2]).unwrap())),
+        ("tapered and bent", |s| s.tapered([-0.3, -0.3]).unwrap().bent(0.4, 0.0).unwrap()),
+    ];
+    for (first, make_first) in &kinds[1..] {
+        for (second, make_second) in &kinds {
+            for (name, apart) in [("apart", 3.0), ("overlapping", 0.6)] {
+                let pairs: Vec<[Sliced; 2]> = (0..SLICED)
+                    .map(|_| {
+                        let [a, b] = [core(&mut random), core(&mut random)];
+                        let a = solid(make_first(a), Vector::zeros(), &mut random);
+                        [a, solid(make_second(b), Vector::new(apart, 0.0, 0.0), &mut random)]
+                    })
+                    .collect();
+                let took = timed(SLICED, |k| solids(&pairs[k][0], &pairs[k][1]));
+                println!("{first} and {second}, {name}: {:.2} ms", 1e-3 * took);
+            }
+        }
+    }
     let wide = 14.0;
     let many: Vec<Posed<Convex>> = (0..BODIES)
         .map(|_| {

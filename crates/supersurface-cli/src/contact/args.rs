@@ -11,8 +11,8 @@ use crate::threads::MOST;
 /// Which bodies, and what is asked of them.
 #[derive(Debug, Args)]
 pub(crate) struct ContactArgs {
-    /// First body: a shape (docs/shape.md) or a fit as a JSON file, - for standard input, or JSON itself. A convex
-    /// superellipsoid (both exponents at most 2), or, for one of both bodies, a supertoroid (ε1 at most 2); not deformed.
+    /// First body: a shape (docs/shape.md) or a fit as a JSON file, - for standard input, or JSON itself. A
+    /// superellipsoid (ε2 at most 2), as it is or tapered, then twisted, then bent, or a supertoroid (ε1 at most 2).
     #[arg(required_unless_present = "cases")]
     pub(super) a: Option<String>,
     /// Second body. The normal points towards it.
@@ -25,7 +25,7 @@ pub(crate) struct ContactArgs {
     #[arg(long, short, value_name = "FILE", requires = "cases")]
     pub(super) output: Option<PathBuf>,
     /// Prove the distance to so many metres, where rounding and some seconds of search allow it. For two
-    /// superellipsoids.
+    /// convex superellipsoids.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     certify: Option<f64>,
     /// Time each pair of --cases, as the best of 5 batches of so many queries; 0 times nothing.

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use supersurface_io::{ContactCase, contact_line, read_contact_cases, shown_name, write_text};
 
 use super::args::ContactArgs;
-use super::body::Body;
 use super::query::Query;
 use crate::exit::Failure;
 use crate::places::Places;
@@ -38,9 +37,7 @@ pub(super) fn run(args: &ContactArgs, file: &Path, query: &Query) -> Result<(), 
     let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let answer = |case: &ContactCase| {
         let result = match &case.bodies {
-            Ok(bodies) => {
-                query.ask(&bodies.map(Body::from)).map(|c| (c, query.time(bodies, args.repeat)))
-            }
+            Ok(bodies) => query.ask_convex(bodies).map(|c| (c, query.time(bodies, args.repeat))),
             Err(why) => Err(why.clone()),
         };
         let before = done.fetch_add(1, Ordering::Relaxed);

@@ -1,5 +1,4 @@
-//! `supersurface contact`: how far apart two convex bodies, or a ring and a convex body, are, or how deep in
-//! each other; one pair or many.
+//! `supersurface contact`: how far apart two bodies are, or how deep in each other; one pair or many.
 
 mod args;
 mod body;

@@ -1,10 +1,10 @@
 //! Two bodies, the points where they are nearest or deepest in each other, and the normal.
 
-use supersurface::contact::Contact;
+use supersurface::contact::{Contact, Sliced};
 use supersurface::picture::{Colour, Image, PALETTE, Picture, View};
+use supersurface::shape::Implicit;
 use supersurface::{Point, Vector};
 
-use super::body::Body;
 use super::text::Lengths;
 
 const SIZE: [usize; 2] = [900, 700];
@@ -18,7 +18,7 @@ const SIDES: [Vector; 2] = [Vector::new(0.9, -1.5, 1.1), Vector::new(1.5, 0.9, 1
 const BEFORE: f64 = 0.25;
 
 /// Draws them, each body as if the other were glass.
-pub(super) fn picture(bodies: &[Body; 2], contact: &Contact) -> Image {
+pub(super) fn picture(bodies: &[Sliced; 2], contact: &Contact) -> Image {
     let n = contact.normal.into_inner();
     let boxes: Vec<Point> = bodies.iter().flat_map(corners).collect();
     let middle = boxes.iter().map(|p| p.coords).sum::<Vector>() / boxes.len() as f64;
@@ -37,7 +37,7 @@ pub(super) fn picture(bodies: &[Body; 2], contact: &Contact) -> Image {
     let [first, second] = [0, 1].map(|k| {
         let mut picture = picture.clone();
         let solid = bodies[k].solid();
-        picture.solid(&solid, bodies[k].pose(), PALETTE[k], 0.9).finish()
+        picture.solid(solid.shape(), solid.pose(), PALETTE[k], 0.9).finish()
     });
     let mean = |(p, q): (&u8, &u8)| p.midpoint(*q);
     let both =
@@ -63,15 +63,15 @@ fn beside(n: &Vector) -> Vector {
 }
 
 /// Where a body's name stands: half way from its centre to its end in a direction.
-fn on_the_far_side(body: &Body, way: &Vector) -> Point {
-    let local = body.pose().rotation.inverse_transform_vector(way);
-    let reach = body.support_point(&local).coords.dot(&local);
-    body.pose() * Point::from(local * (0.5 * reach))
+fn on_the_far_side(body: &Sliced, way: &Vector) -> Point {
+    let solid = body.solid();
+    let local = solid.pose().rotation.inverse_transform_vector(way);
+    solid.pose() * Point::from(local * (0.5 * solid.shape().extent(&local)))
 }
 
 /// Corners of the box around a body along its own axes.
-fn corners(body: &Body) -> Vec<Point> {
-    let [low, high] = body.bounds();
+fn corners(body: &Sliced) -> Vec<Point> {
+    let [low, high] = body.solid().shape().bounds();
     let corner = |k: usize| Vector::from_fn(|i, _| if k >> i & 1 == 0 { low[i] } else { high[i] });
-    (0..8).map(|k| body.pose() * Point::from(corner(k))).collect()
+    (0..8).map(|k| body.solid().pose() * Point::from(corner(k))).collect()
 }

@@ -3,10 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use supersurface::contact::{Contact, Convex, WarmStart, certify, pair, ring};
+use supersurface::contact::{Contact, Convex, Sliced, WarmStart, certify, pair, solids};
 use supersurface::shape::Posed;
-
-use super::body::Body;
 
 /// Batches of which the best counts.
 const BATCHES: u32 = 5;
@@ -19,26 +17,19 @@ pub(super) struct Query {
 
 impl Query {
     /// The contact; it fails where lengths overflow or vanish beside others.
-    pub(super) fn ask(&self, bodies: &[Body; 2]) -> Result<Contact, String> {
-        let contact = match bodies {
-            [Body::Convex(a), Body::Convex(b)] => self.cold(a, b),
-            [Body::Ring(_), Body::Ring(_)] => {
-                return Err("of two supertoroids one must be replaced by convex parts".to_owned());
-            }
+    pub(super) fn ask(&self, [a, b]: &[Sliced; 2]) -> Result<Contact, String> {
+        match (a.as_convex(), b.as_convex()) {
+            (Some(a), Some(b)) => self.ask_convex(&[a, b]),
             _ if self.tolerance.is_some() => {
-                return Err("--certify is for two superellipsoids".to_owned());
+                Err("--certify is for two convex superellipsoids".to_owned())
             }
-            [Body::Ring(a), Body::Convex(b)] => ring(a, b).map_err(|e| e.to_string())?,
-            [Body::Convex(a), Body::Ring(b)] => turned(ring(b, a).map_err(|e| e.to_string())?),
-        };
-        let points = contact.witnesses.iter().flat_map(|p| p.coords.iter());
-        let numbers = points.chain(contact.normal.iter()).chain(&contact.bounds);
-        match contact.distance.is_finite() && numbers.copied().all(f64::is_finite) {
-            true => Ok(contact),
-            false => {
-                Err("lengths overflow, or differ by too much: are all of them metres?".to_owned())
-            }
+            _ => finite(solids(a, b).map_err(|e| e.to_string())?),
         }
+    }
+
+    /// The same of convex bodies.
+    pub(super) fn ask_convex(&self, [a, b]: &[Posed<Convex>; 2]) -> Result<Contact, String> {
+        finite(self.cold(a, b))
     }
 
     /// Nanoseconds of such a query: the mean of the best batch of `repeat` queries.
@@ -64,9 +55,12 @@ impl Query {
     }
 }
 
-/// The contact of the same bodies in the other order.
-fn turned(mut contact: Contact) -> Contact {
-    contact.normal = -contact.normal;
-    contact.witnesses.reverse();
-    contact
+/// A contact all of whose numbers are.
+fn finite(contact: Contact) -> Result<Contact, String> {
+    let points = contact.witnesses.iter().flat_map(|p| p.coords.iter());
+    let numbers = points.chain(contact.normal.iter()).chain(&contact.bounds);
+    match contact.distance.is_finite() && numbers.copied().all(f64::is_finite) {
+        true => Ok(contact),
+        false => Err("lengths overflow, or differ by too much: are all of them metres?".to_owned()),
+    }
 }

@@ -6,7 +6,7 @@ use supersurface::contact::common_point;
 use supersurface_io::{contact_json, write_png};
 
 use super::args::ContactArgs;
-use super::body::{Body, body};
+use super::body::body;
 use super::picture::picture;
 use super::query::Query;
 use super::text::text;
@@ -35,10 +35,8 @@ pub(super) fn run(args: &ContactArgs, given: [&str; 2], query: &Query) -> Result
     });
     let told = print(&match args.json {
         true => {
-            let common = match &bodies {
-                [Body::Convex(a), Body::Convex(b)] => common_point(a, b, &contact),
-                _ => None,
-            };
+            let convex = bodies[0].as_convex().zip(bodies[1].as_convex());
+            let common = convex.and_then(|(a, b)| common_point(&a, &b, &contact));
             contact_json(&contact, common, [first, second]) + "\n"
         }
         false => text([first, second], &bodies, &contact),

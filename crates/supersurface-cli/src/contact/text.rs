@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use supersurface::Point;
-use supersurface::contact::Contact;
+use supersurface::contact::{Contact, Sliced};
+use supersurface::shape::Implicit;
 
-use super::body::Body;
 use crate::numbers::{fixed, short};
 
 /// Distances below this share of the bodies' size are none.
@@ -21,8 +21,12 @@ pub(super) struct Lengths {
 
 impl Lengths {
     /// As suits two bodies, whose size is the mean of their largest half widths.
-    pub(super) fn of(bodies: &[Body; 2]) -> Self {
-        let size = 0.5 * bodies[0].largest() + 0.5 * bodies[1].largest();
+    pub(super) fn of(bodies: &[Sliced; 2]) -> Self {
+        let largest = |body: &Sliced| {
+            let [low, high] = body.solid().shape().bounds();
+            0.5 * (high - low).amax()
+        };
+        let size = 0.5 * largest(&bodies[0]) + 0.5 * largest(&bodies[1]);
         let (unit, units) = if size < 1.0 { ("mm", 1e3) } else { ("m", 1.0) };
         Self { size, unit, units }
     }
@@ -49,7 +53,7 @@ impl Lengths {
 }
 
 /// The text of a contact.
-pub(super) fn text([a, b]: [&str; 2], bodies: &[Body; 2], contact: &Contact) -> String {
+pub(super) fn text([a, b]: [&str; 2], bodies: &[Sliced; 2], contact: &Contact) -> String {
     let lengths = Lengths::of(bodies);
     let mut out = format!("{}\n", lengths.told(contact.distance));
     let mut line = |what: &str, value: String| {

@@ -1,10 +1,10 @@
 //! Where the bodies of a scene touch each other and what they lie on, by the exact queries.
 
-use supersurface::contact::{Contact, Convex, WarmStart, half_space, pair, ring};
+use supersurface::contact::{Contact, Convex, Sliced, WarmStart, half_space, pair, solids};
 use supersurface::nalgebra;
 use supersurface::scene::Scene;
-use supersurface::shape::{Posed, Superellipsoid, Supertoroid, SupportMap};
-use supersurface::surface::Surface;
+use supersurface::shape::{Posed, Superellipsoid, SupportMap};
+use supersurface::surface::{Solid, Surface};
 use supersurface::{Point, Vector};
 use supersurface_io::Touch;
 
@@ -13,23 +13,19 @@ const NEAR: f64 = 5e-4;
 /// Exponents of a box: its faces are where they should be, its edges 2 % of its size rounder.
 const BOX: [f64; 2] = [0.02; 2];
 
-/// A part as the queries take it. Other parts (tapered, bent, twisted) touch the table alone.
-enum Part {
-    Convex(Posed<Convex>),
-    Ring(Posed<Supertoroid>),
-    Other,
+/// A part as the queries take it. Others (tapered, bent, twisted) touch the table alone, as do two rings: such depths take seconds.
+struct Part {
+    convex: Option<Posed<Convex>>,
+    sliced: Option<Sliced>,
 }
 
 impl Part {
     fn new(solid: &Posed<Surface>) -> Self {
-        let convex = |s: &Superellipsoid| Posed::new(Convex::new(*s).ok()?, *solid.pose()).ok();
-        match solid.shape() {
-            Surface::Superellipsoid(s) => convex(s).map_or(Self::Other, Self::Convex),
-            Surface::Supertoroid(s) => {
-                Posed::new(*s, *solid.pose()).map_or(Self::Other, Self::Ring)
-            }
-            _ => Self::Other,
-        }
+        let plain = matches!(solid.shape(), Surface::Superellipsoid(_) | Surface::Supertoroid(_));
+        let sliced =
+            || Sliced::new(&Posed::new(Solid::from(*solid.shape()), *solid.pose()).ok()?).ok();
+        let sliced = if plain { sliced() } else { None };
+        Self { convex: sliced.as_ref().and_then(Sliced::as_convex), sliced }
     }
 }
 
@@ -66,9 +62,9 @@ pub(super) fn touches(scene: &Scene) -> Vec<Touch> {
         things.push(Thing { name: body.name.clone(), parts });
     }
     for board in &scene.boards {
-        let cuboid = Superellipsoid::new(board.half_extents, BOX).and_then(Convex::new);
-        let part = cuboid.and_then(|c| Posed::new(c, board.pose));
-        let parts = part.into_iter().map(|p| (Part::Convex(p), boxed(&p))).collect();
+        let cuboid = Superellipsoid::new(board.half_extents, BOX).map(Surface::Superellipsoid);
+        let solid = cuboid.and_then(|c| Posed::new(c, board.pose));
+        let parts = solid.into_iter().map(|s| (Part::new(&s), boxed(&s))).collect();
         things.push(Thing { name: board.name.clone(), parts });
     }
     for (i, a) in things.iter().take(scene.bodies.len()).enumerate() {
@@ -87,16 +83,10 @@ fn deepest(contacts: impl Iterator<Item = Contact>) -> Option<Contact> {
 }
 
 fn between(a: &Part, b: &Part) -> Option<Contact> {
-    let turned = |mut contact: Contact| {
-        contact.normal = -contact.normal;
-        contact.witnesses.reverse();
-        contact
-    };
-    match (a, b) {
-        (Part::Convex(a), Part::Convex(b)) => Some(pair(a, b, &mut WarmStart::default())),
-        (Part::Ring(a), Part::Convex(b)) => ring(a, b).ok(),
-        (Part::Convex(a), Part::Ring(b)) => ring(b, a).ok().map(turned),
-        _ => None,
+    match (&a.convex, &b.convex) {
+        (Some(a), Some(b)) => Some(pair(a, b, &mut WarmStart::default())),
+        (None, None) => None,
+        _ => solids(a.sliced.as_ref()?, b.sliced.as_ref()?).ok(),
     }
 }
 

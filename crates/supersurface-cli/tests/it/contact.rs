@@ -127,15 +127,36 @@ fn a_ring_and_a_body_answer_in_both_orders() {
         let normal = |k: usize| told[k]["normal"][0].as_f64().unwrap();
         assert!((normal(0) + normal(1)).abs() < 1e-9, "{told:?}");
     }
-    run(&["contact", ring, ring]).ended(3);
+}
+
+#[test]
+fn deformed_bodies_and_two_rings_answer() {
+    let cup =
+        boxed(0.0).replace('}', r#", "deformations": [{"type": "taper", "slopes": [0.2, 0.2]}]}"#);
+    let far = boxed(0.5);
+    let told = run(&["contact", &cup, &far, "--json"]).ended(0).stdout;
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert!(told["distance"].as_f64().unwrap() > 0.3, "{told}");
+    let ring = |x: f64, turn: &str| {
+        format!(
+            r#"{{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 4, "exponents": [1, 1], "position": [{x}, 0, 0], "orientation_wxyz": {turn}}}"#
+        )
+    };
+    // two links of a chain
+    let [flat, upright] =
+        [ring(0.0, "[1, 0, 0, 0]"), ring(4.0, "[0.7071067811865476, 0.7071067811865476, 0, 0]")];
+    let ran = run(&["contact", &flat, &upright]).ended(0);
+    assert!(ran.stdout.starts_with("apart by 2 m"), "{}", ran.stdout);
 }
 
 #[test]
 fn other_members_are_refused_with_what_to_do() {
     let toroid = r#"{"type": "supertoroid", "semi_axes": [1, 1, 1], "ring_ratio": 3, "exponents": [2.5, 1]}"#;
-    let sharp = r#"{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [2.5, 1]}"#;
-    let cup =
-        boxed(0.0).replace('}', r#", "deformations": [{"type": "taper", "slopes": [0.2, 0.2]}]}"#);
+    let sharp = r#"{"type": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [1, 2.5]}"#;
+    let wrong_order = boxed(0.0).replace(
+        '}',
+        r#", "deformations": [{"type": "twist", "turns": 0.1}, {"type": "taper", "slopes": [0.2, 0.2]}]}"#,
+    );
     let cylinder = r#"{"type": "supercylinder", "semi_axes": [1, 1, 1], "exponent": 1}"#;
     let union = format!(r#"{{"type": "union", "of": [{}, {}]}}"#, boxed(0.0), boxed(1.0));
     let assembly = format!(
@@ -146,9 +167,9 @@ fn other_members_are_refused_with_what_to_do() {
     let bowl = r#"{"type": "superparaboloid", "semi_axes": [1, 1, 1], "exponents": [1, 1]}"#;
     let file = scratch("other.json");
     for (shape, member, mend) in [
-        (toroid, "supertoroid", "encloses"),
-        (sharp, "superellipsoid whose exponent ε1 is 2.5", "2 instead"),
-        (&cup, "superellipsoid, tapered", "encloses"),
+        (toroid, "supertoroid whose exponent ε1 is 2.5", "encloses"),
+        (sharp, "superellipsoid whose exponent ε2 is 2.5", "2 instead"),
+        (&wrong_order, "superellipsoid, twisted, tapered", "encloses"),
         (cylinder, "supercylinder", "superellipsoid where it is one"),
         (&union, "combination", "parts one by one"),
         (&assembly, "assembly", "parts one by one"),

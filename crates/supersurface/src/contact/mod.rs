@@ -6,7 +6,7 @@
 //! | the same in an optimisation | [`differentiate`] | derivatives by both poses and shapes |
 //! | a point of both | [`common_point`] | the proof of an overlap |
 //! | many convex bodies | [`contacts`] | all pairs within a distance |
-//! | a ring and a convex body | [`ring`] | the same, also through the hole; wider bounds of the depth |
+//! | rings, tapered, twisted and bent bodies | [`solids`] of [`Sliced`] | the same, also through holes; wider bounds of the depth |
 //! | a half space, a ball, a point | [`half_space`], [`sphere`] | the same for toroids |
 //! | how deep a point lies in a solid | [`Indented`], [`ByClosestPoint`] | equation (46) without iteration; the exact closest point |
 //! | a mesh against a supersurface | [`Foundation`] | forces of an elastic layer, wrench on both bodies, derivatives by both poses |
@@ -15,8 +15,8 @@
 pub mod elastic;
 mod many;
 mod pair;
-mod ring;
 mod simple;
+mod sliced;
 
 pub use elastic::laws;
 pub use elastic::{
@@ -29,5 +29,5 @@ pub use pair::{
     BodyDerivative, Contact, Convex, WarmStart, certify, common_point, differentiate, intersect,
     pair,
 };
-pub use ring::ring;
 pub use simple::{half_space, sphere};
+pub use sliced::{NotSliced, Sliced, solids};

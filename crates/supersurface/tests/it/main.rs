@@ -6,6 +6,7 @@ mod combined;
 mod conformance;
 mod contact;
 mod contact_ring;
+mod contact_sliced;
 mod fit_generic;
 mod fit_turned;
 mod fit_views;

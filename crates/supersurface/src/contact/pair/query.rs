@@ -36,6 +36,16 @@ pub struct Contact {
     pub witnesses: [Point; 2],
 }
 
+impl Contact {
+    /// The contact of the same bodies in the other order.
+    #[must_use]
+    pub fn turned(mut self) -> Self {
+        self.normal = -self.normal;
+        self.witnesses.reverse();
+        self
+    }
+}
+
 /// What a query remembers for the next one of the same two bodies a moment later.
 ///
 /// It changes how long the next query takes, and what it says by rounding only.

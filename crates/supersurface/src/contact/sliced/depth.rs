@@ -1,27 +1,27 @@
-//! The shortest translation that parts a ring from a body that it overlaps.
+//! The shortest translation that parts two bodies that overlap.
 //!
-//! Locally it is found by `settle`: places where the body touches the ring in one point, as well as those where it is
-//! held by two or three, as a box in a round hole is, and which no common normal leads to. Which of these is
+//! Locally it is found by `settle`: places where the bodies touch in one point, as well as those where one is
+//! held at two or three, as a box in a round hole is, and which no common normal leads to. Which of these is
 //! the shortest is decided over cells of directions: that no translation of a cell up to some length parts is shown by
 //! `blocked`, and a cell where it cannot be shown leads to a shorter one, or is split in four.
 
 use super::apart::nearest;
 use super::blocked::Blocked;
+use super::body::Sliced;
 use super::directions::Cell;
+use super::grid::Grid;
 use super::settle::{Parting, Settling};
-use super::size;
-use super::slices::Slice;
-use crate::contact::{Contact, Convex, WarmStart};
-use crate::shape::{InvalidShape, Posed, Supertoroid, SupportMap};
+use crate::contact::{Contact, WarmStart};
+use crate::shape::InvalidShape;
 use crate::{Direction, Point, Vector};
 
-/// Slices at first; others are added where a body slips between them.
-const SLICES: usize = 64;
+/// Slices of a body at first, if it alone is cut, and if both are; others are added where a body slips between them.
+const SLICES: [usize; 2] = [64, 20];
 /// Cells after which the bounds are what they are.
 const MOST: usize = 300;
 /// The depth is shown to be at least this share of what was found, if the cells last.
 const CONTENT: f64 = 0.95;
-/// Directions out of the ring's hull that are tried first.
+/// Directions out of the bodies' hulls that are tried first.
 const OUTWARD: usize = 3;
 /// Directions that lead out after this many times the best length are followed at first.
 const AROUND: f64 = 1.15;
@@ -29,29 +29,24 @@ const AROUND: f64 = 1.15;
 const OUT: f64 = 1e-3;
 /// How often the best is taken up again.
 const POLISHES: usize = 20;
-/// Shorter translations have no direction, relative to the ring's size.
+/// Shorter translations have no direction, relative to the bodies' size.
 const NONE: f64 = 1e-12;
 
-/// The contact of a ring with a body that it overlaps.
-pub(super) fn depth(
-    torus: &Posed<Supertoroid>,
-    body: &Posed<Convex>,
-) -> Result<Contact, InvalidShape> {
-    let slices = Slice::around(torus, SLICES)?;
-    let mut search = Search {
-        torus,
-        body,
-        settling: Settling::new(torus, body, &slices, size(torus)),
-        blocked: Blocked::new(torus, body, &slices),
-    };
-    search.solve()
+/// The contact of two bodies that overlap, by a translation of the second.
+pub(super) fn depth(bodies: [&Sliced; 2]) -> Result<Contact, InvalidShape> {
+    let both = bodies.iter().all(|body| body.as_convex().is_none());
+    let grid = Grid::new(bodies, SLICES[usize::from(both)])?;
+    let size = bodies[0].size().min(bodies[1].size());
+    let settling = Settling::new(bodies, &grid, size);
+    Search { bodies, size, settling, blocked: Blocked::new(&grid) }.solve()
 }
 
 struct Search<'a> {
-    torus: &'a Posed<Supertoroid>,
-    body: &'a Posed<Convex>,
+    bodies: [&'a Sliced; 2],
+    /// The smaller body's size.
+    size: f64,
     settling: Settling<'a>,
-    blocked: Blocked<'a>,
+    blocked: Blocked,
 }
 
 impl Search<'_> {
@@ -104,31 +99,30 @@ impl Search<'_> {
                 Some(found) if found.by.norm() < length => best = found,
                 _ => break,
             }
-            if length - best.by.norm() <= NONE * size(self.torus) {
+            if length - best.by.norm() <= NONE * self.size {
                 break;
             }
         }
         let length = best.by.norm();
         let least = open.iter().map(|(reach, _)| *reach).fold(CONTENT * length, f64::min);
         let most = self.longest(&best, sure)?.max(length);
-        let shortest = NONE * size(self.torus);
+        let shortest = NONE * self.size;
         let normal = Direction::try_new(best.by, shortest).unwrap_or(best.touch.contact.normal);
-        let on_ring = best.touch.contact.witnesses[0];
+        let on_first = best.touch.contact.witnesses[0];
         Ok(Contact {
             distance: -length,
             bounds: [-most, -least],
             normal,
-            witnesses: [on_ring, Point::from(on_ring.coords - best.by)],
+            witnesses: [on_first, Point::from(on_first.coords - best.by)],
         })
     }
 
-    /// How far the body must move along a unit direction to leave the ring's convex hull by the plane across it.
+    /// How far the second body must move along a unit direction to leave the first's hull by the plane across it.
     fn outward(&self, way: &Vector) -> f64 {
-        let far = self.torus.support_point(way) - self.body.support_point(&-way);
-        far.dot(way).max(0.0)
+        (self.bodies[0].extent(way) + self.bodies[1].extent(&-way)).max(0.0)
     }
 
-    /// Follows a direction that is blocked up to `reach` out of the ring, if that takes less than `limit`, and adds to
+    /// Follows a direction that is blocked up to `reach` out of the first body, if that takes less than `limit`, and adds to
     /// what is known where that settles.
     fn follow(
         &mut self,
@@ -143,7 +137,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The length, less than `limit`, at which a direction first leads out of the ring; slices are added where only
+    /// The length, less than `limit`, at which a direction first leads out of the first body; slices are added where only
     /// those between block.
     fn exit(&mut self, way: &Vector, reach: f64, limit: f64) -> Result<Option<f64>, InvalidShape> {
         let (mut reach, mut added) = (reach, false);
@@ -161,19 +155,20 @@ impl Search<'_> {
             if self.blocked.full() || (added && reach <= before) {
                 return Ok(None);
             }
-            self.blocked.add(Slice::new(self.torus, touch.angle)?);
+            let [a, b] = touch.at;
+            self.blocked.add([self.bodies[0].slice(a)?, self.bodies[1].slice(b)?]);
             added = true;
         }
     }
 
     /// A length of which it is shown that a translation as long parts: little more than the best's, or `sure`.
     fn longest(&self, best: &Parting, sure: f64) -> Result<f64, InvalidShape> {
-        let (length, size) = (best.by.norm(), size(self.torus));
+        let (length, size) = (best.by.norm(), self.size);
         let way = best.by.try_normalize(0.0).unwrap_or(best.touch.contact.normal.into_inner());
         let more = 1e-3 * length.max(1e-2 * size);
-        let body = self.settling.moved(&(way * (length + more)));
+        let moved = self.bodies[1].moved(&(way * (length + more)));
         let content = 0.3 * more / size;
-        let found = nearest(self.torus, &body, content, &mut WarmStart::default())?;
+        let found = nearest([self.bodies[0], &moved], content, &mut WarmStart::default())?;
         Ok(if found.bounds[0] > 0.0 { sure.min(length + more) } else { sure })
     }
 }

@@ -1,69 +1,65 @@
-//! How far along a direction a ring blocks a body, shown by a chain of slices.
+//! How far along a direction one body blocks another, shown by a chain of pairs of slices.
 //!
-//! A slice that overlaps the body by more than a cell of directions is wide, at two lengths of the translation, does so
-//! at all between, as its distance is a convex function of the translation.
+//! Two slices that overlap by more than a cell of directions is wide, at two lengths of the translation, do so
+//! at all between, as their distance is a convex function of the translation.
 
-use super::slices::Slice;
-use crate::contact::{Convex, WarmStart};
-use crate::shape::{Posed, Supertoroid};
-use crate::{Pose, Vector};
+use super::grid::Grid;
+use super::slice::{FEW, MANY, Slice};
+use crate::Vector;
+use crate::contact::WarmStart;
 
 /// Questions to slices after which nothing more is shown.
 const MOST_ASKED: usize = 100_000;
-/// Slices, with those that are added.
-const MOST_SLICES: usize = 128;
-/// A slice carries on where it blocks this much farther at least, relative to the length that is asked for.
+/// Pairs that are added.
+const MOST_ADDED: usize = 64;
+/// A pair carries on where it blocks this much farther at least, relative to the length that is asked for.
 const FARTHER: f64 = 1e-5;
-/// The end of what a slice blocks is found to this, relative to the same.
+/// The end of what a pair blocks is found to this, relative to the same.
 const FOUND: f64 = 1e-4;
 /// Steps of the search for that end.
 const STEPS: usize = 12;
 
-/// A body among the slices of a ring.
-pub(super) struct Blocked<'a> {
-    torus: &'a Posed<Supertoroid>,
-    body: &'a Posed<Convex>,
+/// The slices of a body among those of another.
+pub(super) struct Blocked {
     /// Those that blocked last are asked first.
-    slices: Vec<(Slice, WarmStart)>,
+    pairs: Vec<([Slice; 2], WarmStart)>,
+    added: usize,
     /// How often slices were asked.
     asked: usize,
 }
 
-impl<'a> Blocked<'a> {
-    pub(super) fn new(
-        torus: &'a Posed<Supertoroid>,
-        body: &'a Posed<Convex>,
-        slices: &[Slice],
-    ) -> Self {
-        let slices = slices.iter().map(|slice| (*slice, WarmStart::default())).collect();
-        Self { torus, body, slices, asked: 0 }
+impl Blocked {
+    pub(super) fn new(grid: &Grid) -> Self {
+        let pair = |k: usize| (grid.node(k).map(|slice| *slice), WarmStart::default());
+        Self { pairs: (0..grid.len()).map(pair).collect(), added: 0, asked: 0 }
     }
 
-    /// One more slice to ask.
-    pub(super) fn add(&mut self, slice: Slice) {
-        self.slices.insert(0, (slice, WarmStart::default()));
+    /// One more pair to ask.
+    pub(super) fn add(&mut self, pair: [Slice; 2]) {
+        self.added += 1;
+        self.pairs.insert(0, (pair, WarmStart::default()));
     }
 
     /// True where slices were asked too often.
-    pub(super) fn exhausted(&self) -> bool {
+    pub(super) const fn exhausted(&self) -> bool {
         self.asked >= MOST_ASKED
     }
 
-    /// True where no more slices are taken.
-    pub(super) fn full(&self) -> bool {
-        self.slices.len() >= MOST_SLICES
+    /// True where no more pairs are taken.
+    pub(super) const fn full(&self) -> bool {
+        self.added >= MOST_ADDED
     }
 
-    /// Up to which length of a translation, but no more than `limit`, the ring is shown to block all unit directions
-    /// within `spread` of one, given that it does so up to `reach`.
+    /// Up to which length of a translation, but no more than `limit`, the bodies are shown to block all unit directions
+    /// within `spread` of one, given that they do so up to `reach`.
     pub(super) fn until(&mut self, way: &Vector, spread: f64, reach: f64, limit: f64) -> f64 {
         let mut reach = reach;
         'further: while reach < limit && self.asked < MOST_ASKED {
-            for place in 0..self.slices.len() {
-                let end = self.slice_until(place, way, spread, [reach, limit]);
+            for place in 0..self.pairs.len() {
+                let end = self.pair_until(place, way, spread, [reach, limit]);
                 if end > reach + FARTHER * limit {
                     reach = end;
-                    self.slices[..=place].rotate_right(1);
+                    self.pairs[..=place].rotate_right(1);
                     continue 'further;
                 }
             }
@@ -72,22 +68,22 @@ impl<'a> Blocked<'a> {
         reach
     }
 
-    /// Negative where a slice blocks a translation and all within `spread` of its direction: convex in the length.
+    /// Negative where a pair blocks a translation and all within `spread` of its direction: convex in the length.
     fn overlap(&mut self, place: usize, way: &Vector, spread: f64, length: f64) -> f64 {
-        let by = way * length;
-        let body = self.body.moved(&Pose::translation(by.x, by.y, by.z));
-        let (slice, start) = &mut self.slices[place];
-        if slice.clear_of(&body) {
+        let ([a, b], start) = &mut self.pairs[place];
+        let b = b.moved(&(way * length));
+        if a.clear_of(&b) {
             return f64::INFINITY;
         }
         self.asked += 1;
-        let contact = slice.touch(self.torus, &body, start).contact;
+        let cells = if spread > 0.0 { MANY } else { FEW };
+        let contact = a.touch(&b, start, cells).contact;
         // a single direction is only tried, a cell is proven
         spread * length + if spread > 0.0 { contact.bounds[1] } else { contact.distance }
     }
 
-    /// Up to where a slice blocks from the lower of two lengths on: chords of a convex function fall short of its root.
-    fn slice_until(
+    /// Up to where a pair blocks from the lower of two lengths on: chords of a convex function fall short of its root.
+    fn pair_until(
         &mut self,
         place: usize,
         way: &Vector,

@@ -17,7 +17,7 @@ pub(super) struct Plane {
 
 impl Plane {
     /// How far a point is on the wrong side.
-    fn missed(&self, p: &Vector) -> f64 {
+    pub(super) fn missed(&self, p: &Vector) -> f64 {
         self.offset - self.normal.dot(p)
     }
 }
