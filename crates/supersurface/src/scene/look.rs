@@ -1,8 +1,9 @@
 //! What a depth camera sees of a scene: a ray a pixel against the bodies and the table's top.
 
 use crate::camera::{Camera, DepthImage};
-use crate::numeric::random::Stream;
-use crate::scene::rays::{Rays, Seen};
+use crate::numeric::random::{Stream, normals};
+use crate::scene::rays::{MOST, NOTHING, Rays, Seen};
+use crate::scene::tiles::{SIDE, Tiles};
 use crate::scene::{DepthNoise, Scene};
 use crate::{Point, Pose, Vector};
 use nalgebra::UnitQuaternion;
@@ -43,84 +44,121 @@ pub fn look(
 ) -> Look {
     let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
-    let row = |v: usize| {
-        let aim = |u: usize| {
-            if noise.lateral == 0.0 {
-                return camera.unproject(u as f64, v as f64);
+    let tiles = Tiles::of(camera);
+    let mut seen = vec![NOTHING; width * height];
+    // a band of tiles each
+    each(&mut seen, SIDE * width, |band, into| {
+        for k in tiles.band(band) {
+            let mut aside = [[0.0; MOST]; 2];
+            if noise.lateral != 0.0 {
+                for (place, [u, v], length) in tiles.rows(k) {
+                    for (aside, skip) in aside.iter_mut().zip([0, 2]) {
+                        let run = &mut aside[place..place + length];
+                        normals(seed, (v * width + u) as u64, skip, run);
+                        run.iter_mut().for_each(|a| *a *= noise.lateral);
+                    }
+                }
             }
-            let mut stream = Stream::new(seed, (v * width + u) as u64);
-            let mut aside = || noise.lateral * stream.normal();
-            camera.unproject(u as f64 + aside(), v as f64 + aside())
-        };
-        rays.see(&(0..width).map(aim).collect::<Vec<_>>())
-    };
-    let seen: Vec<Seen> = gather_by(1, height, row).concat();
-    let reading = |i: usize| {
-        let Some(Seen { depth, incidence, label, .. }) = seen.get(i).copied() else {
-            return (f32::NAN, 0);
-        };
-        if !depth.is_finite() {
-            return (f32::NAN, 0);
+            let [right, down] = aside;
+            let aim = |(i, [u, v]): (usize, [usize; 2])| {
+                camera.unproject(u as f64 + right[i], v as f64 + down[i])
+            };
+            let found = rays.see(&tiles.pixels(k).enumerate().map(aim).collect::<Vec<_>>());
+            for (place, [u, v], length) in tiles.rows(k) {
+                let start = (v - band * SIDE) * width + u;
+                into[start..start + length].copy_from_slice(&found[place..place + length]);
+            }
         }
-        let mut stream = Stream::new(!seed, i as u64);
-        let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
-        let kept = stream.uniform();
-        let error = match noise.patch {
-            0 | 1 => stream.normal(),
-            side => patch_error(i, width, side, seed),
+    });
+    let errors = Errors::new(noise, width, height, seed);
+    let turn = camera_pose.rotation.inverse().to_rotation_matrix().cast::<f32>();
+    let rows = gather(height, |v| {
+        let row = v * width..(v + 1) * width;
+        let error = errors.row(v);
+        let reading = |(i, error): (usize, f64)| {
+            let Seen { depth, incidence, label, .. } = seen[i];
+            if !depth.is_finite() {
+                return (f32::NAN, 0);
+            }
+            let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
+            let kept = Stream::new(!seed, i as u64).uniform();
+            let z = noise.reading(depth, incidence, edge, kept, error) as f32;
+            (z, if z.is_nan() { 0 } else { label })
         };
-        let z = noise.reading(depth, incidence, edge, kept, error) as f32;
-        (z, if z.is_nan() { 0 } else { label })
-    };
-    let (depth, labels) = gather(width * height, reading).into_iter().unzip();
+        row.zip(error).map(reading).collect::<Vec<_>>()
+    });
+    let (depth, labels) = rows.into_iter().flatten().unzip();
     let depth = DepthImage::new([width, height], depth);
-    let to_optical = camera_pose.rotation.inverse().cast::<f32>();
-    let normals = seen.iter().map(|s| (to_optical * s.normal).into()).collect();
     let depth = depth.unwrap_or_else(|| DepthImage::empty(camera));
+    let normals = seen.iter().map(|s| (turn * s.normal).into()).collect();
     Look { depth, labels, seen: seen.iter().map(|s| s.label).collect(), normals }
 }
 
-/// The error of a pixel that is the mean of its square's, scaled to a standard deviation of 1. The pixels of a square have
-/// their own streams, so that this is the same on any number of threads.
-fn patch_error(i: usize, width: usize, side: usize, seed: u64) -> f64 {
-    let half = side / 2;
-    let (u, v) = (i % width + half, i / width + half);
-    let rows = (v - half..v - half + side)
-        .flat_map(|v| (u - half..u - half + side).map(move |u| (v * (width + side) + u) as u64));
-    rows.map(|k| Stream::new(seed.rotate_left(32), k).normal()).sum::<f64>() / side as f64
+/// Errors of the readings in standard deviations.
+struct Errors {
+    seed: u64,
+    width: usize,
+    side: usize,
+    /// One for each pixel of an image that is larger by a square; empty where each pixel errs alone.
+    field: Vec<f64>,
+}
+
+impl Errors {
+    fn new(noise: &DepthNoise, width: usize, height: usize, seed: u64) -> Self {
+        let side = noise.patch.max(1);
+        let across = width + side;
+        let row = |v: usize| {
+            let mut row = vec![0.0; across];
+            normals(seed.rotate_left(32), (v * across) as u64, 0, &mut row);
+            row
+        };
+        let field = if side > 1 { gather(height + side, row).concat() } else { Vec::new() };
+        Self { seed, width, side, field }
+    }
+
+    /// Of a row of pixels. The error of a pixel that is the mean of its square's is scaled to a standard deviation of 1.
+    fn row(&self, v: usize) -> Vec<f64> {
+        let mut row = vec![0.0; self.width];
+        if self.side == 1 {
+            // the first number of each stream says whether there is a reading
+            normals(!self.seed, (v * self.width) as u64, 1, &mut row);
+            return row;
+        }
+        for above in self.field.chunks(self.width + self.side).skip(v).take(self.side) {
+            for first in 0..self.side {
+                row.iter_mut().zip(&above[first..]).for_each(|(sum, error)| *sum += error);
+            }
+        }
+        row.iter_mut().for_each(|sum| *sum /= self.side as f64);
+        row
+    }
 }
 
 /// How much each body of a scene shows of what it would show alone: the share of its pixels at which nothing is nearer; 0
 /// for a body outside the image.
 pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64> {
-    let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
+    let tiles = Tiles::of(camera);
     // pixels in which each body is seen, and in which it would be
-    let row = |v: usize| {
-        let along: Vec<Vector> = (0..width).map(|u| camera.unproject(u as f64, v as f64)).collect();
+    let counts = gather(tiles.count(), |k| {
+        let aim = |[u, v]: [usize; 2]| camera.unproject(u as f64, v as f64);
+        let along: Vec<Vector> = tiles.pixels(k).map(aim).collect();
         let alone = rays.alone(&along);
         let mut counts: Vec<[u32; 2]> = alone.into_iter().map(|n| [0, n]).collect();
-        for seen in rays.see(&along).iter().filter(|s| s.label > 0) {
+        for seen in rays.see(&along).iter().take(along.len()).filter(|s| s.label > 0) {
             counts[seen.label as usize - 1][0] += 1;
         }
         counts
-    };
-    let rows = gather_by(1, height, row);
-    let sum = |k: usize, of: usize| rows.iter().map(|row| f64::from(row[k][of])).sum::<f64>();
+    });
+    let sum = |k: usize, of: usize| counts.iter().map(|tile| f64::from(tile[k][of])).sum::<f64>();
     (0..scene.bodies.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
 }
 
 /// All values of `f` in order, on all cores.
 #[cfg(feature = "parallel")]
 fn gather<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    gather_by(1024, n, f)
-}
-
-/// The same, at least so many on one core.
-#[cfg(feature = "parallel")]
-fn gather_by<T: Send>(least: usize, n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     use rayon::prelude::*;
-    (0..n).into_par_iter().with_min_len(least).map(f).collect()
+    (0..n).into_par_iter().map(f).collect()
 }
 
 /// All values of `f` in order.
@@ -129,10 +167,17 @@ fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
     (0..n).map(f).collect()
 }
 
-/// The same.
+/// Tells `f` of each piece of so many values, on all cores.
+#[cfg(feature = "parallel")]
+fn each<T: Send>(values: &mut [T], length: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+    use rayon::prelude::*;
+    values.par_chunks_mut(length).enumerate().for_each(|(k, piece)| f(k, piece));
+}
+
+/// Tells `f` of each piece of so many values.
 #[cfg(not(feature = "parallel"))]
-fn gather_by<T>(_: usize, n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
-    gather(n, f)
+fn each<T>(values: &mut [T], length: usize, f: impl Fn(usize, &mut [T])) {
+    values.chunks_mut(length).enumerate().for_each(|(k, piece)| f(k, piece));
 }
 
 /// True when a neighbour is much nearer or farther.
