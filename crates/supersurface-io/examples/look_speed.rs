@@ -4,6 +4,8 @@
 //! OUT gets a mesh of each part in the world, `part_000.ply` and on, no farther than the tolerance (in metres) from the
 //! surface, and `depth.f32`, the depths along the optical axis by rows. `compare/look_open3d.py` reads them.
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::path::Path;
 

@@ -2,14 +2,15 @@
 
 use crate::camera::{Camera, DepthImage};
 use crate::numeric::random::{Stream, normals};
-use crate::scene::rays::{MOST, NOTHING, Rays, Seen};
-use crate::scene::tiles::{SIDE, Tiles};
+use crate::scene::rays::{Rays, Seen};
+use crate::scene::tiles::{ROWS, Run, Tiles};
 use crate::scene::{DepthNoise, Scene};
 use crate::{Point, Pose, Vector};
 use nalgebra::UnitQuaternion;
+use std::iter::repeat_with;
 
 /// A jump of depth between neighbours, relative to the depth, that counts as an edge.
-const JUMP: f64 = 0.015;
+const JUMP: f32 = 0.015;
 
 /// A depth image with the truth about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,53 +46,58 @@ pub fn look(
     let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
     let tiles = Tiles::of(camera);
-    let mut seen = vec![NOTHING; width * height];
-    // a band of tiles each
-    each(&mut seen, SIDE * width, |band, into| {
-        for k in tiles.band(band) {
-            let mut aside = [[0.0; MOST]; 2];
-            if noise.lateral != 0.0 {
-                for (place, [u, v], length) in tiles.rows(k) {
-                    for (aside, skip) in aside.iter_mut().zip([0, 2]) {
-                        let run = &mut aside[place..place + length];
-                        normals(seed, (v * width + u) as u64, skip, run);
-                        run.iter_mut().for_each(|a| *a *= noise.lateral);
-                    }
+    let pixels = width * height;
+    let exact = *noise == DepthNoise::none();
+    let mut depth = vec![0.0; pixels];
+    let mut incidence = vec![0.0; if exact { 0 } else { pixels }];
+    let (mut seen, mut normals) = (vec![0; pixels], vec![[0.0; 3]; pixels]);
+    let band = ROWS * width;
+    let incidences = incidence.chunks_mut(band).map(Some).chain(repeat_with(|| None));
+    let bands = depth.chunks_mut(band).zip(incidences);
+    let bands = bands.zip(seen.chunks_mut(band).zip(normals.chunks_mut(band)));
+    each(bands.collect(), |band, ((depth, mut incidence), (seen, normals))| {
+        let mut found = Seen::nothing();
+        for tile in tiles.band(band) {
+            let places = tiles.places(tile, noise.lateral, seed);
+            rays.see(&places.along(camera), &mut found);
+            for Run { place, pixel, length } in tiles.runs(tile) {
+                let (from, start) = (place..place + length, pixel - band * ROWS * width);
+                let to = start..start + length;
+                depth[to.clone()].copy_from_slice(&found.depth[from.clone()]);
+                if let Some(incidence) = &mut incidence {
+                    incidence[to.clone()].copy_from_slice(&found.incidence[from.clone()]);
                 }
-            }
-            let [right, down] = aside;
-            let aim = |(i, [u, v]): (usize, [usize; 2])| {
-                camera.unproject(u as f64 + right[i], v as f64 + down[i])
-            };
-            let found = rays.see(&tiles.pixels(k).enumerate().map(aim).collect::<Vec<_>>());
-            for (place, [u, v], length) in tiles.rows(k) {
-                let start = (v - band * SIDE) * width + u;
-                into[start..start + length].copy_from_slice(&found[place..place + length]);
+                seen[to.clone()].copy_from_slice(&found.label[from.clone()]);
+                for (normal, i) in normals[to].iter_mut().zip(from) {
+                    *normal = [0, 1, 2].map(|k| found.normal[k][i]);
+                }
             }
         }
     });
     let errors = Errors::new(noise, width, height, seed);
-    let turn = camera_pose.rotation.inverse().to_rotation_matrix().cast::<f32>();
-    let rows = gather(height, |v| {
-        let row = v * width..(v + 1) * width;
-        let error = errors.row(v);
-        let reading = |(i, error): (usize, f64)| {
-            let Seen { depth, incidence, label, .. } = seen[i];
-            if !depth.is_finite() {
-                return (f32::NAN, 0);
+    let (depth, labels) = if exact {
+        depth.iter_mut().filter(|z| z.is_infinite()).for_each(|z| *z = f32::NAN);
+        (depth, seen.clone())
+    } else {
+        let (mut readings, mut labels) = (vec![f32::NAN; pixels], vec![0; pixels]);
+        let rows = readings.chunks_mut(width).zip(labels.chunks_mut(width));
+        each(rows.collect(), |v, (readings, labels)| {
+            for (u, error) in errors.row(v).into_iter().enumerate() {
+                let i = v * width + u;
+                if depth[i].is_finite() {
+                    let edge = noise.edge > 0.0 && beside_a_jump(&depth, i, width);
+                    let kept = Stream::new(!seed, i as u64).uniform();
+                    let (depth, incidence) = (depth[i].into(), incidence[i].into());
+                    readings[u] = noise.reading(depth, incidence, edge, kept, error) as f32;
+                    labels[u] = if readings[u].is_nan() { 0 } else { seen[i] };
+                }
             }
-            let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
-            let kept = Stream::new(!seed, i as u64).uniform();
-            let z = noise.reading(depth, incidence, edge, kept, error) as f32;
-            (z, if z.is_nan() { 0 } else { label })
-        };
-        row.zip(error).map(reading).collect::<Vec<_>>()
-    });
-    let (depth, labels) = rows.into_iter().flatten().unzip();
+        });
+        (readings, labels)
+    };
     let depth = DepthImage::new([width, height], depth);
     let depth = depth.unwrap_or_else(|| DepthImage::empty(camera));
-    let normals = seen.iter().map(|s| (turn * s.normal).into()).collect();
-    Look { depth, labels, seen: seen.iter().map(|s| s.label).collect(), normals }
+    Look { depth, labels, seen, normals }
 }
 
 /// Errors of the readings in standard deviations.
@@ -140,13 +146,14 @@ pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64
     let rays = Rays::new(scene, camera_pose);
     let tiles = Tiles::of(camera);
     // pixels in which each body is seen, and in which it would be
-    let counts = gather(tiles.count(), |k| {
-        let aim = |[u, v]: [usize; 2]| camera.unproject(u as f64, v as f64);
-        let along: Vec<Vector> = tiles.pixels(k).map(aim).collect();
+    let counts = gather(tiles.count(), |tile| {
+        let along = tiles.places(tile, 0.0, 0).along(camera);
         let alone = rays.alone(&along);
         let mut counts: Vec<[u32; 2]> = alone.into_iter().map(|n| [0, n]).collect();
-        for seen in rays.see(&along).iter().take(along.len()).filter(|s| s.label > 0) {
-            counts[seen.label as usize - 1][0] += 1;
+        let mut seen = Seen::nothing();
+        rays.see(&along, &mut seen);
+        for label in seen.label.iter().take(along.count).filter(|label| **label > 0) {
+            counts[*label as usize - 1][0] += 1;
         }
         counts
     });
@@ -167,23 +174,23 @@ fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
     (0..n).map(f).collect()
 }
 
-/// Tells `f` of each piece of so many values, on all cores.
+/// Gives `f` each piece with its number, on all cores.
 #[cfg(feature = "parallel")]
-fn each<T: Send>(values: &mut [T], length: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+fn each<T: Send>(pieces: Vec<T>, f: impl Fn(usize, T) + Sync + Send) {
     use rayon::prelude::*;
-    values.par_chunks_mut(length).enumerate().for_each(|(k, piece)| f(k, piece));
+    pieces.into_par_iter().enumerate().for_each(|(k, piece)| f(k, piece));
 }
 
-/// Tells `f` of each piece of so many values.
+/// Gives `f` each piece with its number.
 #[cfg(not(feature = "parallel"))]
-fn each<T>(values: &mut [T], length: usize, f: impl Fn(usize, &mut [T])) {
-    values.chunks_mut(length).enumerate().for_each(|(k, piece)| f(k, piece));
+fn each<T>(pieces: Vec<T>, f: impl Fn(usize, T)) {
+    pieces.into_iter().enumerate().for_each(|(k, piece)| f(k, piece));
 }
 
 /// True when a neighbour is much nearer or farther.
-fn beside_a_jump(seen: &[Seen], i: usize, width: usize) -> bool {
-    let depth = |j: Option<usize>| j.and_then(|j| seen.get(j)).map_or(f64::NAN, |s| s.depth);
-    let here = depth(Some(i));
+fn beside_a_jump(depth: &[f32], i: usize, width: usize) -> bool {
+    let at = |j: Option<usize>| j.and_then(|j| depth.get(j)).map_or(f32::NAN, |z| *z);
+    let here = at(Some(i));
     let column = i % width;
     let neighbours = [
         (column > 0).then(|| i - 1),
@@ -191,5 +198,5 @@ fn beside_a_jump(seen: &[Seen], i: usize, width: usize) -> bool {
         i.checked_sub(width),
         Some(i + width),
     ];
-    neighbours.into_iter().any(|j| (depth(j) - here).abs() > JUMP * here)
+    neighbours.into_iter().any(|j| (at(j) - here).abs() > JUMP * here)
 }

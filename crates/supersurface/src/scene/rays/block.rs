@@ -25,6 +25,13 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// Without rays yet.
+    #[inline(always)]
+    pub(super) const fn from(origin: [f64; 3]) -> Self {
+        let none = [0.0; WIDTH];
+        Self { origin, directions: [none; 3], near: none, far: none }
+    }
+
     /// The points at distances along the rays.
     #[inline(always)]
     pub(super) fn at<const FUSED: bool>(&self, t: &Row) -> [Row; 3] {
@@ -50,6 +57,12 @@ pub(super) struct Hits {
 impl Hits {
     pub(super) const NONE: Self =
         Self { distance: [f64::INFINITY; WIDTH], normal: [[0.0; WIDTH]; 3] };
+}
+
+/// A solid whose first hits a block of rays is told at once.
+pub(super) trait Solid {
+    /// The first hits of the rays. Must be `#[inline(always)]`.
+    fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits;
 }
 
 /// A superellipsoid's gauge at a point of each ray, and its derivatives by the coordinates.

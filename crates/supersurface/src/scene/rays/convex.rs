@@ -12,8 +12,8 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Gauge, Hits, gauge};
-use crate::numeric::lanes::{Job, Lane, WIDTH, dispatch};
+use super::block::{Block, Gauge, Hits, Solid, gauge};
+use crate::numeric::lanes::{Lane, WIDTH};
 use crate::surface::Surface;
 
 /// Steps after which a ray that neither arrived nor missed is taken to miss.
@@ -34,7 +34,7 @@ pub(super) struct Convex {
 
 /// Planes that touch a solid, at hits of earlier rays.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Planes {
+struct Planes {
     /// Outward normal, and how far the origin of the rays is behind the plane: a negative number.
     planes: [([f64; 3], f64); PLANES],
     count: usize,
@@ -54,18 +54,11 @@ impl Convex {
         let convex = exponents.iter().all(|e| *e <= 2.0) && kx == ky && kx.abs() <= most;
         convex.then_some(Self { axes, exponents, taper: kx / axes[2] })
     }
-
-    /// The first hits of the rays.
-    pub(super) fn hits(&self, block: &Block, planes: &mut Planes) -> Hits {
-        let mut hits = Hits::NONE;
-        dispatch(Approach { solid: self, block, planes, hits: &mut hits });
-        planes.keep(block, &hits);
-        hits
-    }
 }
 
 impl Planes {
     /// Those at the first and the last hit.
+    #[inline(always)]
     fn keep(&mut self, block: &Block, hits: &Hits) {
         let met = |i: &usize| hits.distance[*i].is_finite();
         let ends = [(0..WIDTH).find(met), (0..WIDTH).rfind(met)];
@@ -81,19 +74,24 @@ impl Planes {
     }
 }
 
-struct Approach<'a> {
+/// A convex solid with planes that touch it.
+pub(super) struct Approach<'a> {
     solid: &'a Convex,
-    block: &'a Block,
-    planes: &'a Planes,
-    hits: &'a mut Hits,
+    planes: Planes,
 }
 
-impl Job for Approach<'_> {
+impl<'a> Approach<'a> {
+    pub(super) fn new(solid: &'a Convex) -> Self {
+        Self { solid, planes: Planes::default() }
+    }
+}
+
+impl Solid for Approach<'_> {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits {
         let Convex { axes, exponents, taper } = *self.solid;
-        let (d, far) = (&self.block.directions, &self.block.far);
-        let mut t = self.block.near;
+        let (d, far) = (&block.directions, &block.far);
+        let mut t = block.near;
         for (normal, behind) in self.planes.planes.iter().take(self.planes.count) {
             for i in 0..WIDTH {
                 let mut along = normal[0] * d[0][i];
@@ -112,7 +110,7 @@ impl Job for Approach<'_> {
             t[i] = t[i].least(far[i]);
         }
         for _ in 0..STEPS {
-            let p = self.block.at::<FUSED>(&t);
+            let p = block.at::<FUSED>(&t);
             let mut u = p;
             for i in 0..WIDTH {
                 let inverse = 1.0 / taper.times_plus::<FUSED>(p[2][i], 1.0);
@@ -120,7 +118,7 @@ impl Job for Approach<'_> {
                 u[1][i] *= inverse;
             }
             let Gauge { value, slopes } = gauge::<FUSED>(&u, axes, exponents);
-            let mut any = 0.0;
+            let mut any = 0;
             for i in 0..WIDTH {
                 // the normal J^{-T} ∇g below the point, and how far the point is above the plane
                 let shrunk = 1.0 / value[i];
@@ -140,12 +138,13 @@ impl Job for Approach<'_> {
                 }
                 live[i] = if arrived || missed { 0.0 } else { live[i] };
                 t[i] = if live[i] > 0.0 { next } else { t[i] };
-                any += live[i];
+                any |= live[i].to_bits();
             }
-            if any == 0.0 {
+            if any == 0 {
                 break;
             }
         }
-        *self.hits = hits;
+        self.planes.keep(block, &hits);
+        hits
     }
 }

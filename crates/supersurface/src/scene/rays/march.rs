@@ -10,8 +10,8 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Hits, Row};
-use crate::numeric::lanes::{Job, Lane, WIDTH, dispatch};
+use super::block::{Block, Hits, Row, Solid};
+use crate::numeric::lanes::{Lane, WIDTH};
 
 /// Steps after which a ray that neither arrived nor missed is taken to miss.
 const STEPS: usize = 250;
@@ -43,24 +43,14 @@ pub(super) trait Marched {
     fn floor<const FUSED: bool>(&self, block: &Block, t: &Row, ahead: &Row) -> Floor;
 }
 
-/// The first hits of the rays.
-pub(super) fn march(solid: &impl Marched, block: &Block) -> Hits {
-    let mut hits = Hits::NONE;
-    dispatch(March { solid, block, hits: &mut hits });
-    hits
-}
+/// A solid with its way of marching.
+pub(super) struct March<S>(pub(super) S);
 
-struct March<'a, S> {
-    solid: &'a S,
-    block: &'a Block,
-    hits: &'a mut Hits,
-}
-
-impl<S: Marched> Job for March<'_, S> {
+impl<S: Marched> Solid for March<S> {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let far = &self.block.far;
-        let mut t = self.block.near;
+    fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits {
+        let far = &block.far;
+        let mut t = block.near;
         let (mut live, mut ahead) = ([0.0; WIDTH], [0.0; WIDTH]);
         let mut hits = Hits::NONE;
         for i in 0..WIDTH {
@@ -70,8 +60,8 @@ impl<S: Marched> Job for March<'_, S> {
         }
         for _ in 0..STEPS {
             let Floor { value, slopes, rate, bend, reach } =
-                self.solid.floor::<FUSED>(self.block, &t, &ahead);
-            let mut any = 0.0;
+                self.0.floor::<FUSED>(block, &t, &ahead);
+            let mut any = 0;
             for i in 0..WIDTH {
                 let root = (rate[i] * rate[i] + 2.0 * bend[i] * value[i]).sqrt();
                 let falling = 2.0 * value[i] / (root - rate[i]);
@@ -91,12 +81,12 @@ impl<S: Marched> Job for March<'_, S> {
                 live[i] = if arrived || missed { 0.0 } else { live[i] };
                 ahead[i] = if live[i] > 0.0 { 2.0 * step } else { ahead[i] };
                 t[i] = if live[i] > 0.0 { next } else { t[i] };
-                any += live[i];
+                any |= live[i].to_bits();
             }
-            if any == 0.0 {
+            if any == 0 {
                 break;
             }
         }
-        *self.hits = hits;
+        hits
     }
 }

@@ -37,7 +37,7 @@ impl Marched for Ring {
         let (log, shares) = self.radius::<FUSED>(&p);
         let (mut radius, mut slopes) = ([0.0; WIDTH], [[0.0; WIDTH]; 3]);
         let (mut offset, mut rise) = ([0.0; WIDTH], [0.0; WIDTH]);
-        let mut within = 0.0;
+        let mut within = 0u64;
         for i in 0..WIDTH {
             radius[i] = exp::<FUSED>(log[i]);
             offset[i] = radius[i] - a4;
@@ -45,10 +45,10 @@ impl Marched for Ring {
             slopes[0][i] = radius[i] * shares[0][i] / x.copysign(p[0][i]);
             slopes[1][i] = radius[i] * shares[1][i] / y.copysign(p[1][i]);
             rise[i] = slopes[0][i] * d[0][i] + slopes[1][i] * d[1][i];
-            within += if offset[i] < 0.0 { 1.0 } else { 0.0 };
+            within |= u64::from(offset[i] < 0.0);
         }
         let mut reach = [f64::INFINITY; WIDTH];
-        if within > 0.0 {
+        if within > 0 {
             let mut end = *t;
             for i in 0..WIDTH {
                 end[i] += ahead[i];
