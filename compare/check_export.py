@@ -35,6 +35,7 @@ SHARE = 1e-3  # most that masses and inertias may be off
 OVERLAP, DRIFT, TURN = 1e-3, 5e-3, 5.0  # metres, metres, degrees
 SECONDS = 2.0
 RESTING = 0.98  # share of bodies that must not move, of many scenes
+PATIENCE = 300  # seconds that a scene may take
 LAYOUTS, THINGS = ("pile", "packed", "shelf", "single"), ("household", "members")
 
 
@@ -546,11 +547,15 @@ def of_seeds(options, checks, totals):
             made = [options.supersurface, "scene", "random", "--quiet", "--formats", "all", "-o", folder]
             made += ["--seed", str(seed), "--layout", layout, "--things", things]
             made += ["-n", "1"] if layout == "single" else []
-            ran = subprocess.run(made, capture_output=True, text=True)
             print(f"seed {seed}: {layout} of {things}", flush=True)
-            if ran.returncode:
-                totals["scene", "random"]["FAILED"] += 1
-                print(f"  {ran.stderr.strip()[:300]}")
+            try:
+                ran = subprocess.run(made, capture_output=True, text=True, timeout=PATIENCE)
+                problem = ran.stderr.strip()[:300] if ran.returncode else None
+            except subprocess.TimeoutExpired:
+                problem = f"not made in {PATIENCE} s"
+            totals["scene", "random"]["FAILED" if problem else "ok"] += 1
+            if problem:
+                print(f"  {problem}", flush=True)
                 continue
             scene = Scene(Path(folder))
             check(scene, checks, totals, True)
