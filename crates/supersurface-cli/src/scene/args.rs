@@ -85,6 +85,10 @@ pub(super) struct MakeArgs {
     /// How the depth camera errs.
     #[arg(long, value_enum, default_value_t = Noise::Realsense)]
     pub(super) noise: Noise,
+    /// Plan grasps of this gripper on what the views show, and write the best of each body as sites: a built-in one or a
+    /// TOML file.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) gripper: Option<String>,
     /// Standard deviation of --noise gaussian, in metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.001)]
     pub(super) deviation: f64,

@@ -9,11 +9,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use supersurface::scene::Recipe;
 use supersurface_io::write_text;
 
 use super::args::DatasetArgs;
-use super::make::{Made, folder, make, recipes};
+use super::make::{Given, Made, folder, given, make};
 use crate::exit::{Failure, print};
 use crate::progress::Progress;
 use crate::threads;
@@ -29,7 +28,7 @@ pub(super) fn run(args: &DatasetArgs) -> Result<(), Failure> {
     if let Some(warning) = fewer {
         progress.warn(&warning);
     }
-    let things = recipes(&args.make)?;
+    let given = given(&args.make)?;
     folder(&args.output)?;
     same_data_set(args)?;
     let missing: Vec<u32> = (0..args.scenes).filter(|k| !place(args, *k).exists()).collect();
@@ -38,7 +37,7 @@ pub(super) fn run(args: &DatasetArgs) -> Result<(), Failure> {
     let done = AtomicUsize::new(0);
     let failed: Vec<Failure> = pool.install(|| {
         let made = missing.par_iter().map(|k| {
-            let result = one(args, &things, *k);
+            let result = one(args, &given, *k);
             let before = done.fetch_add(1, Ordering::Relaxed);
             progress.say(format!("made {} of {count} scenes", before + 1));
             result
@@ -95,7 +94,7 @@ fn same_data_set(args: &DatasetArgs) -> Result<(), Failure> {
 }
 
 /// Makes a scene beside its place, then moves it there.
-fn one(args: &DatasetArgs, things: &[Recipe], k: u32) -> Result<(), Failure> {
+fn one(args: &DatasetArgs, given: &Given, k: u32) -> Result<(), Failure> {
     let whole = place(args, k);
     let part = args.output.join(shard(k)).join(format!("{PART}{k:06}"));
     let wrong = |path: &Path, e| Failure::output(format!("{}: {e}", path.display()));
@@ -104,7 +103,7 @@ fn one(args: &DatasetArgs, things: &[Recipe], k: u32) -> Result<(), Failure> {
     }
     folder(&part)?;
     let seed = args.seed.wrapping_add(k.into());
-    let made = make(&args.make, things, seed, &part, |_, _| ())?;
+    let made = make(&args.make, given, seed, &part, |_, _| ())?;
     let name = format!("{}/scene_{k:06}", shard(k));
     write_text(&part.join(ROW), &format!("{}\n", row(&name, seed, &made)))
         .map_err(Failure::output)?;

@@ -4,11 +4,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use supersurface::camera::Camera;
+use supersurface::grasp::Gripper;
 use supersurface::scene::{Recipe, Scene, arrange, draw, look, turntable, visibility};
-use supersurface_io::{SceneCamera, SceneExtras, read_things, write_scene, write_view};
+use supersurface_io::{
+    SceneCamera, SceneExtras, read_gripper, read_things, write_scene, write_view,
+};
 use supersurface_physics::{SettleOptions, Settled, settle_scene};
 
 use super::args::{MakeArgs, formats};
+use super::sites::Grasps;
 use super::touches::touches;
 use crate::exit::Failure;
 
@@ -26,15 +30,27 @@ pub(super) struct Made {
     pub(super) warnings: Vec<String>,
 }
 
-/// What things are drawn from, once the other arguments are right.
-pub(super) fn recipes(args: &MakeArgs) -> Result<Vec<Recipe>, Failure> {
+/// What files say that the arguments name.
+pub(super) struct Given {
+    things: Vec<Recipe>,
+    gripper: Option<Gripper>,
+}
+
+/// Reads the files that the arguments name, once the others are right.
+pub(super) fn given(args: &MakeArgs) -> Result<Given, Failure> {
     if !(args.deviation >= 0.0 && args.deviation.is_finite()) {
         let given = args.deviation;
         return Err(Failure::usage(format!(
             "--deviation {given}: must be finite and not negative"
         )));
     }
-    read_things(&args.things).map_err(Failure::input)
+    if args.gripper.is_some() && args.views == 0 {
+        let problem = "--gripper plans on what a view shows, and there is none: --views 1 or more";
+        return Err(Failure::usage(problem.to_owned()));
+    }
+    let things = read_things(&args.things).map_err(Failure::input)?;
+    let gripper = args.gripper.as_deref().map(read_gripper).transpose().map_err(Failure::input)?;
+    Ok(Given { things, gripper })
 }
 
 /// Makes a folder where it is missing.
@@ -45,13 +61,13 @@ pub(super) fn folder(path: &Path) -> Result<(), Failure> {
 /// Makes the scene of a seed in a folder; `say` is told what is being done.
 pub(super) fn make(
     args: &MakeArgs,
-    things: &[Recipe],
+    given: &Given,
     seed: u64,
     output: &Path,
     mut say: impl FnMut(&'static str, String),
 ) -> Result<Made, Failure> {
     say("draw", format!("drawing {} bodies", args.count));
-    let bodies = draw(things, args.count.into(), seed).map_err(Failure::input)?;
+    let bodies = draw(&given.things, args.count.into(), seed).map_err(Failure::input)?;
     let mut scene = arrange(bodies, args.layout.layout(), seed).map_err(Failure::input)?;
     say("settle", "letting them fall".to_owned());
     let settled = settle_scene(&mut scene, &SettleOptions::default()).map_err(Failure::input)?;
@@ -69,6 +85,7 @@ pub(super) fn make(
     let camera = Camera::new(SIZE, [FOCAL; 2], middle).map_err(Failure::input)?;
     let noise = args.noise.model(args.deviation);
     let (mut cameras, mut shares) = (Vec::new(), vec![0f64; scene.bodies.len()]);
+    let mut grasps = given.gripper.as_ref().map(|gripper| Grasps::new(gripper, &scene));
     for (k, pose) in turntable(&scene, &camera, args.views.into()).into_iter().enumerate() {
         let name = format!("view_{k:03}");
         say("look", format!("looking: view {} of {}", k + 1, args.views));
@@ -76,12 +93,16 @@ pub(super) fn make(
         let place = output.join(&name);
         folder(&place)?;
         write_view(&place, &seen, &camera, &pose).map_err(Failure::output)?;
+        if let Some(grasps) = &mut grasps {
+            grasps.add(&seen, &camera, &pose);
+        }
         let shown = visibility(&scene, &camera, &pose);
         shares.iter_mut().zip(shown).for_each(|(most, share)| *most = most.max(share));
         cameras.push(SceneCamera { name, camera: camera.clone(), pose });
     }
     say("write", format!("writing {}", output.display()));
-    let extras = SceneExtras { cameras, touches: touches(&scene), ..SceneExtras::default() };
+    let sites = grasps.map_or_else(Vec::new, |grasps| grasps.sites(&scene));
+    let extras = SceneExtras { cameras, sites, touches: touches(&scene) };
     let files =
         write_scene(output, &scene, &extras, &formats(&args.formats)).map_err(Failure::output)?;
     Ok(Made { scene, settled, shares, files, warnings })

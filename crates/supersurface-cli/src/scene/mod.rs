@@ -4,6 +4,7 @@ mod args;
 mod dataset;
 mod make;
 mod random;
+mod sites;
 mod text;
 mod touches;
 

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::args::RandomArgs;
-use super::make::{folder, make, recipes};
+use super::make::{folder, given, make};
 use super::text::text;
 use crate::exit::{Failure, print};
 use crate::progress::Progress;
@@ -15,11 +15,11 @@ pub(super) fn run(args: &RandomArgs) -> Result<(), Failure> {
     if let Some(warning) = fewer {
         progress.warn(&warning);
     }
-    let things = recipes(&args.make)?;
+    let given = given(&args.make)?;
     // before the long work, so that a folder that cannot be made is known at once
     folder(&args.output)?;
     let say = |stage, what| progress.begin(stage, what);
-    let made = pool.install(|| make(&args.make, &things, args.seed, &args.output, say))?;
+    let made = pool.install(|| make(&args.make, &given, args.seed, &args.output, say))?;
     for warning in &made.warnings {
         progress.warn(warning);
     }

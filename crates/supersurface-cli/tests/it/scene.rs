@@ -86,6 +86,34 @@ fn what_is_wrong_with_a_scene_is_said() {
 }
 
 #[test]
+fn grasps_become_sites() {
+    let folder = scratch("scene_grasps");
+    let words = ["scene", "random", "-n", "3", "--layout", "packed", "--seed", "5", "--quiet"];
+    let more = ["--gripper", "panda_hand", "--views", "2", "--formats", "mjcf,usda,glb"];
+    run(&[&words[..], &more[..], &["-o", text(&folder)]].concat()).ended(0);
+    let read = read_scene(&folder.join("scene.json")).unwrap();
+    let sites = &read.extras.sites;
+    assert!(sites.iter().filter(|site| site.name.ends_with(" 1")).count() >= 2, "{sites:?}");
+    for site in sites {
+        let named = |name: &str| site.name.starts_with(&format!("grasp {name} "));
+        let body = read.scene.bodies.iter().find(|body| named(&body.name)).unwrap();
+        // the tool's origin is between the pads, which hold the body, and comes from above
+        let [low, high] = body.bounds();
+        let at = site.pose.translation.vector;
+        assert!((0..3).all(|k| at[k] > low[k] - 0.02 && at[k] < high[k] + 0.02), "{site:?}");
+        assert!((site.pose.rotation * supersurface::Vector::z()).z < 0.1, "{site:?}");
+        let id = site.name.replace(' ', "_");
+        for file in ["scene.xml", "scene.usda", "scene.glb"] {
+            let bytes = fs::read(folder.join(file)).unwrap();
+            assert!(String::from_utf8_lossy(&bytes).contains(&format!("\"{id}\"")), "{file} {id}");
+        }
+    }
+    let words = ["scene", "random", "--gripper", "panda_hand", "--views", "0"];
+    let told = run(&[&words[..], &["-o", text(&folder)]].concat()).ended(2).stderr;
+    assert!(told.contains("--views 1"), "{told}");
+}
+
+#[test]
 fn a_data_set_that_was_cut_off_is_completed_to_the_same_bytes() {
     let [whole, cut] = ["dataset_whole", "dataset_cut"].map(scratch);
     for folder in [&whole, &cut] {

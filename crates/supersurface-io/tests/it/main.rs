@@ -2,6 +2,7 @@
 
 mod contacts;
 mod crowded;
+mod exports;
 mod faults;
 mod formats;
 mod grippers;

@@ -19,14 +19,14 @@ const NAMES: [&str; 8] =
     ["../../x", "<a&\"b\">", "", "", "Ünï ☕\u{7}\n", "NUL", "x' $(y) `z`", "Physics"];
 
 /// An empty folder of this test alone.
-fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("supersurface-{name}-{}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub(crate) fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -147,7 +147,7 @@ fn odd_names_stay_in_the_folder_and_break_nothing() {
 }
 
 /// Tags close in order, and what has a meaning in XML stands only where it has it.
-fn well_formed(text: &str) {
+pub(crate) fn well_formed(text: &str) {
     let mut open = Vec::new();
     for piece in text.split('<').skip(1) {
         let (tag, after) = piece.split_once('>').expect("a tag that ends");

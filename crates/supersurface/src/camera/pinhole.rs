@@ -105,6 +105,20 @@ impl Camera {
         Vector::new(x, y, 1.0)
     }
 
+    /// [`Camera::unproject`] of many pixels at once: x and y of each.
+    pub(crate) fn unproject_all(&self, [u, v]: [&[f64]; 2], [x, y]: [&mut [f64]; 2]) {
+        let straight = self.distortion == [0.0; 8];
+        let to = x.iter_mut().zip(y);
+        for ((x, y), (u, v)) in to.zip(u.iter().zip(v)) {
+            (*x, *y) = if straight {
+                ((u - self.centre[0]) / self.focal[0], (v - self.centre[1]) / self.focal[1])
+            } else {
+                let along = self.unproject(*u, *v);
+                (along.x, along.y)
+            };
+        }
+    }
+
     /// Unit direction of the ray through pixel (u, v), in the optical frame.
     pub fn direction(&self, u: f64, v: f64) -> Direction {
         Direction::new_normalize(self.unproject(u, v))

@@ -2,8 +2,6 @@
 
 mod closest;
 mod hit;
-mod hit_block;
-mod hit_ring;
 mod implicit_curvature;
 mod nearest;
 mod nearest_on_quadric;
@@ -12,8 +10,6 @@ mod taubin;
 
 pub use closest::{Closest, ClosestFinder};
 pub use hit::{Hit, first_hit};
-pub(crate) use hit_block::block_hits;
-pub(crate) use hit_ring::ring_hit;
 pub use implicit_curvature::{CurvatureFrame, implicit_curvature, level_curvature};
 pub use nearest::NearestFinder;
 pub use nearest_on_quadric::nearest_on_quadric;

@@ -1,14 +1,16 @@
 //! What a depth camera sees of a scene: a ray a pixel against the bodies and the table's top.
 
 use crate::camera::{Camera, DepthImage};
-use crate::numeric::random::Stream;
+use crate::numeric::random::{Stream, normals};
 use crate::scene::rays::{Rays, Seen};
+use crate::scene::tiles::{ROWS, Run, Tiles};
 use crate::scene::{DepthNoise, Scene};
 use crate::{Point, Pose, Vector};
 use nalgebra::UnitQuaternion;
+use std::iter::repeat_with;
 
 /// A jump of depth between neighbours, relative to the depth, that counts as an edge.
-const JUMP: f64 = 0.015;
+const JUMP: f32 = 0.015;
 
 /// A depth image with the truth about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,84 +45,127 @@ pub fn look(
 ) -> Look {
     let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
-    let row = |v: usize| {
-        let aim = |u: usize| {
-            if noise.lateral == 0.0 {
-                return camera.unproject(u as f64, v as f64);
+    let tiles = Tiles::of(camera);
+    let pixels = width * height;
+    let exact = *noise == DepthNoise::none();
+    let mut depth = vec![0.0; pixels];
+    let mut incidence = vec![0.0; if exact { 0 } else { pixels }];
+    let (mut seen, mut normals) = (vec![0; pixels], vec![[0.0; 3]; pixels]);
+    let band = ROWS * width;
+    let incidences = incidence.chunks_mut(band).map(Some).chain(repeat_with(|| None));
+    let bands = depth.chunks_mut(band).zip(incidences);
+    let bands = bands.zip(seen.chunks_mut(band).zip(normals.chunks_mut(band)));
+    each(bands.collect(), |band, ((depth, mut incidence), (seen, normals))| {
+        let mut found = Seen::nothing();
+        for tile in tiles.band(band) {
+            let places = tiles.places(tile, noise.lateral, seed);
+            rays.see(&places.along(camera), &mut found);
+            for Run { place, pixel, length } in tiles.runs(tile) {
+                let (from, start) = (place..place + length, pixel - band * ROWS * width);
+                let to = start..start + length;
+                depth[to.clone()].copy_from_slice(&found.depth[from.clone()]);
+                if let Some(incidence) = &mut incidence {
+                    incidence[to.clone()].copy_from_slice(&found.incidence[from.clone()]);
+                }
+                seen[to.clone()].copy_from_slice(&found.label[from.clone()]);
+                for (normal, i) in normals[to].iter_mut().zip(from) {
+                    *normal = [0, 1, 2].map(|k| found.normal[k][i]);
+                }
             }
-            let mut stream = Stream::new(seed, (v * width + u) as u64);
-            let mut aside = || noise.lateral * stream.normal();
-            camera.unproject(u as f64 + aside(), v as f64 + aside())
-        };
-        rays.see(&(0..width).map(aim).collect::<Vec<_>>())
-    };
-    let seen: Vec<Seen> = gather_by(1, height, row).concat();
-    let reading = |i: usize| {
-        let Some(Seen { depth, incidence, label, .. }) = seen.get(i).copied() else {
-            return (f32::NAN, 0);
-        };
-        if !depth.is_finite() {
-            return (f32::NAN, 0);
         }
-        let mut stream = Stream::new(!seed, i as u64);
-        let edge = noise.edge > 0.0 && beside_a_jump(&seen, i, width);
-        let kept = stream.uniform();
-        let error = match noise.patch {
-            0 | 1 => stream.normal(),
-            side => patch_error(i, width, side, seed),
-        };
-        let z = noise.reading(depth, incidence, edge, kept, error) as f32;
-        (z, if z.is_nan() { 0 } else { label })
+    });
+    let errors = Errors::new(noise, width, height, seed);
+    let (depth, labels) = if exact {
+        depth.iter_mut().filter(|z| z.is_infinite()).for_each(|z| *z = f32::NAN);
+        (depth, seen.clone())
+    } else {
+        let (mut readings, mut labels) = (vec![f32::NAN; pixels], vec![0; pixels]);
+        let rows = readings.chunks_mut(width).zip(labels.chunks_mut(width));
+        each(rows.collect(), |v, (readings, labels)| {
+            for (u, error) in errors.row(v).into_iter().enumerate() {
+                let i = v * width + u;
+                if depth[i].is_finite() {
+                    let edge = noise.edge > 0.0 && beside_a_jump(&depth, i, width);
+                    let kept = Stream::new(!seed, i as u64).uniform();
+                    let (depth, incidence) = (depth[i].into(), incidence[i].into());
+                    readings[u] = noise.reading(depth, incidence, edge, kept, error) as f32;
+                    labels[u] = if readings[u].is_nan() { 0 } else { seen[i] };
+                }
+            }
+        });
+        (readings, labels)
     };
-    let (depth, labels) = gather(width * height, reading).into_iter().unzip();
     let depth = DepthImage::new([width, height], depth);
-    let to_optical = camera_pose.rotation.inverse().cast::<f32>();
-    let normals = seen.iter().map(|s| (to_optical * s.normal).into()).collect();
     let depth = depth.unwrap_or_else(|| DepthImage::empty(camera));
-    Look { depth, labels, seen: seen.iter().map(|s| s.label).collect(), normals }
+    Look { depth, labels, seen, normals }
 }
 
-/// The error of a pixel that is the mean of its square's, scaled to a standard deviation of 1. The pixels of a square have
-/// their own streams, so that this is the same on any number of threads.
-fn patch_error(i: usize, width: usize, side: usize, seed: u64) -> f64 {
-    let half = side / 2;
-    let (u, v) = (i % width + half, i / width + half);
-    let rows = (v - half..v - half + side)
-        .flat_map(|v| (u - half..u - half + side).map(move |u| (v * (width + side) + u) as u64));
-    rows.map(|k| Stream::new(seed.rotate_left(32), k).normal()).sum::<f64>() / side as f64
+/// Errors of the readings in standard deviations.
+struct Errors {
+    seed: u64,
+    width: usize,
+    side: usize,
+    /// One for each pixel of an image that is larger by a square; empty where each pixel errs alone.
+    field: Vec<f64>,
+}
+
+impl Errors {
+    fn new(noise: &DepthNoise, width: usize, height: usize, seed: u64) -> Self {
+        let side = noise.patch.max(1);
+        let across = width + side;
+        let row = |v: usize| {
+            let mut row = vec![0.0; across];
+            normals(seed.rotate_left(32), (v * across) as u64, 0, &mut row);
+            row
+        };
+        let field = if side > 1 { gather(height + side, row).concat() } else { Vec::new() };
+        Self { seed, width, side, field }
+    }
+
+    /// Of a row of pixels. The error of a pixel that is the mean of its square's is scaled to a standard deviation of 1.
+    fn row(&self, v: usize) -> Vec<f64> {
+        let mut row = vec![0.0; self.width];
+        if self.side == 1 {
+            // the first number of each stream says whether there is a reading
+            normals(!self.seed, (v * self.width) as u64, 1, &mut row);
+            return row;
+        }
+        for above in self.field.chunks(self.width + self.side).skip(v).take(self.side) {
+            for first in 0..self.side {
+                row.iter_mut().zip(&above[first..]).for_each(|(sum, error)| *sum += error);
+            }
+        }
+        row.iter_mut().for_each(|sum| *sum /= self.side as f64);
+        row
+    }
 }
 
 /// How much each body of a scene shows of what it would show alone: the share of its pixels at which nothing is nearer; 0
 /// for a body outside the image.
 pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64> {
-    let [width, height] = camera.size();
     let rays = Rays::new(scene, camera_pose);
+    let tiles = Tiles::of(camera);
     // pixels in which each body is seen, and in which it would be
-    let row = |v: usize| {
-        let along: Vec<Vector> = (0..width).map(|u| camera.unproject(u as f64, v as f64)).collect();
+    let counts = gather(tiles.count(), |tile| {
+        let along = tiles.places(tile, 0.0, 0).along(camera);
         let alone = rays.alone(&along);
         let mut counts: Vec<[u32; 2]> = alone.into_iter().map(|n| [0, n]).collect();
-        for seen in rays.see(&along).iter().filter(|s| s.label > 0) {
-            counts[seen.label as usize - 1][0] += 1;
+        let mut seen = Seen::nothing();
+        rays.see(&along, &mut seen);
+        for label in seen.label.iter().take(along.count).filter(|label| **label > 0) {
+            counts[*label as usize - 1][0] += 1;
         }
         counts
-    };
-    let rows = gather_by(1, height, row);
-    let sum = |k: usize, of: usize| rows.iter().map(|row| f64::from(row[k][of])).sum::<f64>();
+    });
+    let sum = |k: usize, of: usize| counts.iter().map(|tile| f64::from(tile[k][of])).sum::<f64>();
     (0..scene.bodies.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
 }
 
 /// All values of `f` in order, on all cores.
 #[cfg(feature = "parallel")]
 fn gather<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    gather_by(1024, n, f)
-}
-
-/// The same, at least so many on one core.
-#[cfg(feature = "parallel")]
-fn gather_by<T: Send>(least: usize, n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     use rayon::prelude::*;
-    (0..n).into_par_iter().with_min_len(least).map(f).collect()
+    (0..n).into_par_iter().map(f).collect()
 }
 
 /// All values of `f` in order.
@@ -129,16 +174,23 @@ fn gather<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
     (0..n).map(f).collect()
 }
 
-/// The same.
+/// Gives `f` each piece with its number, on all cores.
+#[cfg(feature = "parallel")]
+fn each<T: Send>(pieces: Vec<T>, f: impl Fn(usize, T) + Sync + Send) {
+    use rayon::prelude::*;
+    pieces.into_par_iter().enumerate().for_each(|(k, piece)| f(k, piece));
+}
+
+/// Gives `f` each piece with its number.
 #[cfg(not(feature = "parallel"))]
-fn gather_by<T>(_: usize, n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
-    gather(n, f)
+fn each<T>(pieces: Vec<T>, f: impl Fn(usize, T)) {
+    pieces.into_iter().enumerate().for_each(|(k, piece)| f(k, piece));
 }
 
 /// True when a neighbour is much nearer or farther.
-fn beside_a_jump(seen: &[Seen], i: usize, width: usize) -> bool {
-    let depth = |j: Option<usize>| j.and_then(|j| seen.get(j)).map_or(f64::NAN, |s| s.depth);
-    let here = depth(Some(i));
+fn beside_a_jump(depth: &[f32], i: usize, width: usize) -> bool {
+    let at = |j: Option<usize>| j.and_then(|j| depth.get(j)).map_or(f32::NAN, |z| *z);
+    let here = at(Some(i));
     let column = i % width;
     let neighbours = [
         (column > 0).then(|| i - 1),
@@ -146,5 +198,5 @@ fn beside_a_jump(seen: &[Seen], i: usize, width: usize) -> bool {
         i.checked_sub(width),
         Some(i + width),
     ];
-    neighbours.into_iter().any(|j| (depth(j) - here).abs() > JUMP * here)
+    neighbours.into_iter().any(|j| (at(j) - here).abs() > JUMP * here)
 }

@@ -16,6 +16,7 @@ mod look;
 mod noise;
 mod rays;
 mod recipe;
+mod tiles;
 mod turntable;
 
 pub use arrange::{Layout, arrange};

@@ -1,10 +1,13 @@
 //! The demonstration scene and the simulated depth camera.
 
-use supersurface::Point;
+use supersurface::camera::Camera;
 use supersurface::cloud::PointCloud;
 use supersurface::measure::first_hit;
-use supersurface::scene::{DepthNoise, demo, look};
+use supersurface::scene::{
+    DepthNoise, Layout, Likeness, Recipe, arrange, demo, draw, look, turntable, visibility,
+};
 use supersurface::shape::{Implicit, Ray};
+use supersurface::{Direction, Point};
 
 #[test]
 fn the_demo_is_deterministic_and_shows_every_body() {
@@ -74,4 +77,75 @@ fn points_lie_on_what_their_labels_say() {
     errors.sort_by(f64::total_cmp);
     let (median, most) = (errors[errors.len() / 2], errors[errors.len() * 98 / 100]);
     assert!(median > 1e-4 && median < 1.5e-3 && most < 5e-3, "median {median}, 98 % {most}");
+}
+
+/// Mugs, bowls, bottles, hammers and bananas.
+fn recipes() -> Vec<Recipe> {
+    let range = |v: f64| [0.9 * v, 1.1 * v];
+    let likenesses = [
+        Likeness::Mug { radius: range(0.04), height: range(0.1), wall: range(0.004) },
+        Likeness::Bowl { radius: range(0.07), depth: range(0.5) },
+        Likeness::Bottle { radius: range(0.035), height: range(0.2) },
+        Likeness::Hammer { length: range(0.25) },
+        Likeness::Superellipsoid {
+            semi_axes: [range(0.016), range(0.016), range(0.09)],
+            exponents: [range(0.7), range(1.0)],
+            taper: [0.0; 2],
+            twist: [0.0; 2],
+            bend: range(1.1),
+        },
+    ];
+    let recipe = |likeness| Recipe {
+        name: "thing".into(),
+        weight: 1.0,
+        likeness,
+        density: range(500.0),
+        friction: range(0.5),
+    };
+    likenesses.into_iter().map(recipe).collect()
+}
+
+/// Every ray of whole images, through lenses that distort, against each solid alone.
+#[test]
+fn pixels_see_the_nearest_of_what_their_rays_meet() {
+    let [width, height] = [75, 61];
+    let camera = Camera::new([width, height], [70.0; 2], [37.3, 29.6])
+        .and_then(|c| c.with_distortion([-0.1, 0.02, 0.003, -0.002, 0.0, 0.0, 0.0, 0.0]))
+        .unwrap();
+    for seed in 0..6 {
+        let bodies = draw(&recipes(), 6, seed).unwrap();
+        let layout = if seed % 2 == 0 { Layout::Pile } else { Layout::Packed };
+        let mut scene = arrange(bodies, layout, seed).unwrap();
+        scene.boards.clear();
+        let pose = turntable(&scene, &camera, 3)[seed as usize % 3];
+        let seen = look(&scene, &camera, &pose, &DepthNoise::none(), seed);
+        let mut alone = vec![0.0; scene.bodies.len()];
+        for i in 0..width * height {
+            let along = camera.unproject((i % width) as f64, (i / width) as f64);
+            let origin = Point::from(pose.translation.vector);
+            let direction = pose * Direction::new_normalize(along);
+            let ray = Ray { origin, direction };
+            let t = -origin.z / direction.z;
+            let foot = ray.at(t);
+            let on = t > 0.0 && (0..2).all(|k| foot[k].abs() <= scene.half_size[k]);
+            let (mut nearest, mut label) = (if on { t } else { f64::INFINITY }, 0);
+            for (k, body) in scene.bodies.iter().enumerate() {
+                let solids = body.solids();
+                let hits = solids.iter().filter_map(|solid| first_hit(solid, &ray, 10.0));
+                let first = hits.map(|hit| hit.distance).fold(f64::INFINITY, f64::min);
+                alone[k] += f64::from(u8::from(first.is_finite()));
+                if first < nearest {
+                    (nearest, label) = (first, k as u32 + 1);
+                }
+            }
+            let depth = f64::from(seen.depth.depth()[i]) * along.norm();
+            assert_eq!(depth.is_nan(), nearest.is_infinite(), "seed {seed}, pixel {i}");
+            assert!(depth.is_nan() || (depth - nearest).abs() < 1e-6, "seed {seed}, pixel {i}");
+            assert_eq!(seen.seen[i], label, "seed {seed}, pixel {i}");
+        }
+        for (k, share) in visibility(&scene, &camera, &pose).into_iter().enumerate() {
+            let shown = seen.seen.iter().filter(|label| **label == k as u32 + 1).count();
+            assert!((share - shown as f64 / f64::max(alone[k], 1.0)).abs() < 1e-12, "{k}");
+        }
+    }
 }
