@@ -19,6 +19,8 @@ const LEVEL: f64 = 1.0 - 1e-6;
 /// First and last step of the search and the farthest turn, in radians.
 const STEPS: [f64; 2] = [0.02, 1e-5];
 const FARTHEST: f64 = 0.4;
+/// Moves and halvings of the step, at most.
+const MOVES: usize = 400;
 /// Directions that are tried for a step: along the body's axes, as the sharp valleys above edges of faces lie along these,
 /// and some apart by the golden angle.
 const TRIED: usize = 8;
@@ -88,8 +90,11 @@ impl Layout {
             parts.iter().map(reach).fold(f64::NEG_INFINITY, f64::max) - centre.dot(d)
         };
         let mut best = (depth(start), start);
-        let ([mut step, last], mut turn) = (STEPS, 0);
-        while step > last {
+        let [mut step, last] = STEPS;
+        for turn in 0..MOVES {
+            if step < last {
+                break;
+            }
             let n = best.1;
             let (along, across) = n.any_orthonormal_pair();
             let axes = [ParryVector::X, ParryVector::Y, ParryVector::Z];
@@ -106,10 +111,7 @@ impl Layout {
                 (nearer && found < best.0 * (1.0 - 1e-15)).then_some((found, d))
             });
             match lower {
-                Some(found) => {
-                    best = found;
-                    turn += 1;
-                }
+                Some(found) => best = found,
                 None => step *= 0.5,
             }
         }
