@@ -3,7 +3,7 @@
 //! Toroids: sectors around z whose hulls have exact support functions (`convex/sector.rs`); only the hole's side is off, by
 //! chords of at most 1 % of the ring's radius. Everything else: slices across the axis of the undeformed solid, the hull of
 //! each made of points of its true surface, so that what lies between them is off by chords: about 0.5 % of the half
-//! widths. Mass is exact, whatever the pieces are.
+//! widths, and on the inside of a bend 1 % of its radius. Mass is exact, whatever the pieces are.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -76,7 +76,7 @@ impl Dispatcher {
                 let kinds = [first, second].map(|c| (c.shape() as &dyn Any).type_id());
                 let whole =
                     [first, second].iter().all(|c| c.shape().as_composite_shape().is_none());
-                if moves && !same && !(whole && !seen.insert(kinds)) {
+                if moves && !same && (!whole || seen.insert(kinds)) {
                     self.check(first.shape(), second.shape())?;
                 }
             }
