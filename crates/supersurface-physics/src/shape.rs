@@ -62,8 +62,10 @@ pub fn shape(surface: &Surface) -> Result<SharedShape, NoShape> {
         return Err(degenerate());
     }
     let convex = match surface {
-        Surface::Superellipsoid(s) => Convex::new(*s).ok().map(ConvexSolid::from_superellipsoid),
-        Surface::Tapered(s) => ConvexSolid::from_tapered(s),
+        Surface::Superellipsoid(s) => {
+            Convex::new(*s).ok().map(|s| ConvexSolid::from_superellipsoid(s, mass))
+        }
+        Surface::Tapered(s) => ConvexSolid::from_tapered(s, mass),
         _ => None,
     };
     if let Some(convex) = convex {

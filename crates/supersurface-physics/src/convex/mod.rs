@@ -1,9 +1,10 @@
-//! A convex solid as a shape of parry: superellipsoids, convex tapered ones, and sectors of toroids.
+//! A convex solid as a shape of parry: superellipsoids, convex tapered ones, sectors of toroids and hulls of points.
 //!
 //! Everything is asked of the exact shape: support points, boxes, mass, and for superellipsoids closest points and first
 //! hits too. No triangles are made of it.
 
 mod feature;
+mod hull;
 mod sector;
 mod tapered;
 
@@ -29,6 +30,7 @@ use supersurface::shape::{
 };
 use supersurface::{Direction, Pose, Vector};
 
+pub(crate) use self::hull::Hull;
 pub(crate) use self::sector::Sector;
 use self::tapered::Tapered;
 use crate::convert::{from_point, from_pose, from_vector, to_point, to_vector};
@@ -38,12 +40,14 @@ use crate::convert::{from_point, from_pose, from_vector, to_point, to_vector};
 /// Made by [`shape`](crate::shape()); `downcast` from a [`SharedShape`](crate::parry::shape::SharedShape) to ask for
 /// [`superellipsoid`](Self::superellipsoid).
 ///
-/// Closest points and rays of tapered solids and of sectors come from parry's iterations on the support function, and are
+/// Closest points and rays of tapered solids and of pieces come from parry's iterations on the support function, and are
 /// as good as these (about 1e-7 of the size); those of superellipsoids are exact.
 #[derive(Clone, Debug)]
 pub struct ConvexSolid {
     kind: Kind,
     bounds: Aabb,
+    /// Mass properties for a density of 1 kg/m³.
+    mass: Mass,
 }
 
 #[derive(Clone, Debug)]
@@ -51,27 +55,49 @@ enum Kind {
     Superellipsoid(Box<(Convex, ClosestFinder)>),
     Tapered(Tapered),
     Sector(Sector),
+    Hull(Hull),
 }
 
 impl ConvexSolid {
-    pub(crate) fn from_superellipsoid(solid: Convex) -> Self {
+    /// With the mass properties for a density of 1 kg/m³.
+    pub(crate) fn from_superellipsoid(solid: Convex, mass: Mass) -> Self {
         let finder = ClosestFinder::superellipsoid(solid.shape());
-        Self::new(Kind::Superellipsoid(Box::new((solid, finder))))
+        Self::new(Kind::Superellipsoid(Box::new((solid, finder))), mass)
     }
 
     /// `None` where the taper makes it hollow somewhere.
-    pub(crate) fn from_tapered(solid: &Deformed<Superellipsoid, Taper>) -> Option<Self> {
-        Some(Self::new(Kind::Tapered(Tapered::new(solid)?)))
+    pub(crate) fn from_tapered(
+        solid: &Deformed<Superellipsoid, Taper>,
+        mass: Mass,
+    ) -> Option<Self> {
+        Some(Self::new(Kind::Tapered(Tapered::new(solid)?), mass))
     }
 
-    pub(crate) fn from_sector(sector: Sector) -> Self {
-        Self::new(Kind::Sector(sector))
+    /// One of several sectors of a toroid, with its share of the toroid's mass properties.
+    pub(crate) fn from_sector(sector: Sector, mass: Mass) -> Self {
+        Self::new(Kind::Sector(sector), mass)
     }
 
-    fn new(kind: Kind) -> Self {
-        let mut solid = Self { kind, bounds: Aabb::new_invalid() };
-        solid.bounds = solid.compute_aabb(&ParryPose::identity());
+    /// A piece of a solid, with its share of the solid's mass properties.
+    pub(crate) fn from_hull(hull: Hull, mass: Mass) -> Self {
+        Self::new(Kind::Hull(hull), mass)
+    }
+
+    fn new(kind: Kind, mass: Mass) -> Self {
+        let mut solid = Self { kind, bounds: Aabb::new_invalid(), mass };
+        solid.bounds = solid.tight_box(&ParryPose::identity());
         solid
+    }
+
+    /// The tight box, by support points.
+    fn tight_box(&self, position: &ParryPose) -> Aabb {
+        let axes = [ParryVector::X, ParryVector::Y, ParryVector::Z];
+        let reach = |n: ParryVector| self.support_point(position, n).dot(n);
+        let [maxs, mins] = [1.0, -1.0].map(|side| {
+            let [x, y, z] = axes.map(|axis| side * reach(axis * side));
+            ParryVector::new(x, y, z)
+        });
+        Aabb::new(mins, maxs)
     }
 
     /// The superellipsoid with the constants of its exact contacts, if it is one.
@@ -81,18 +107,10 @@ impl ConvexSolid {
             _ => None,
         }
     }
-
-    fn mass(&self, density: f64) -> Mass {
-        match &self.kind {
-            Kind::Superellipsoid(solid) => solid.0.shape().mass_properties(density),
-            Kind::Tapered(solid) => solid.shape().mass_properties(density),
-            Kind::Sector(sector) => sector.mass(density),
-        }
-    }
 }
 
-/// Mass properties as parry has them, by principal axes.
-pub(crate) fn to_parry_mass(mass: &Mass) -> MassProperties {
+/// Mass properties as parry has them, by principal axes, of a body whose mass for a density of 1 kg/m³ is known.
+pub(crate) fn to_parry_mass(mass: &Mass, density: f64) -> MassProperties {
     let mut axes = mass.inertia.symmetric_eigen();
     // a rotation, not a reflection
     if axes.eigenvectors.determinant() < 0.0 {
@@ -100,10 +118,10 @@ pub(crate) fn to_parry_mass(mass: &Mass) -> MassProperties {
     }
     let turn = UnitQuaternion::from_matrix(&axes.eigenvectors);
     let frame = from_pose(&Pose::from_parts(Translation3::identity(), turn)).rotation;
-    let inertia = from_vector(&axes.eigenvalues.map(|v| v.max(0.0)));
+    let inertia = from_vector(&axes.eigenvalues.map(|v| v.max(0.0) * density));
     MassProperties::with_principal_inertia_frame(
         from_point(&mass.centre),
-        mass.mass,
+        mass.mass * density,
         inertia,
         frame,
     )
@@ -116,6 +134,7 @@ impl SupportMap for ConvexSolid {
             Kind::Superellipsoid(solid) => solid.0.support_point(&n),
             Kind::Tapered(solid) => solid.support_point(&n),
             Kind::Sector(sector) => sector.support_point(&n),
+            Kind::Hull(hull) => hull.support_point(&n),
         })
     }
 }
@@ -147,7 +166,7 @@ impl PointQuery for ConvexSolid {
         match &self.kind {
             Kind::Superellipsoid(exact) => exact.0.shape().contains(&to_point(pt)),
             Kind::Tapered(tapered) => tapered.shape().contains(&to_point(pt)),
-            Kind::Sector(_) => self.project_local_point(pt, true).is_inside,
+            Kind::Sector(_) | Kind::Hull(_) => self.project_local_point(pt, true).is_inside,
         }
     }
 }
@@ -164,7 +183,7 @@ impl RayCast for ConvexSolid {
                 exact_hit(exact.0.shape(), ray, max_time_of_impact, solid)
             }
             Kind::Tapered(tapered) => exact_hit(tapered.shape(), ray, max_time_of_impact, solid),
-            Kind::Sector(_) => local_ray_intersection_with_support_map_with_params(
+            Kind::Sector(_) | Kind::Hull(_) => local_ray_intersection_with_support_map_with_params(
                 self,
                 &mut VoronoiSimplex::new(),
                 ray,
@@ -225,23 +244,18 @@ impl Shape for ConvexSolid {
         let [x, y, z] = old.semi_axes();
         let axes = [x * scale.x.abs(), y * scale.y.abs(), z * scale.z.abs()];
         let scaled = Convex::new(Superellipsoid::new(axes, old.exponents()).ok()?).ok()?;
-        Some(Box::new(Self::from_superellipsoid(scaled)))
+        let mass = scaled.shape().mass_properties(1.0);
+        Some(Box::new(Self::from_superellipsoid(scaled, mass)))
     }
 
-    /// The tight box, by support points.
+    /// Around the turned local box: not tight, but asked for many times in every step.
     fn compute_aabb(&self, position: &ParryPose) -> Aabb {
-        let axes = [ParryVector::X, ParryVector::Y, ParryVector::Z];
-        let reach = |n: ParryVector| self.support_point(position, n).dot(n);
-        let [maxs, mins] = [1.0, -1.0].map(|side| {
-            let [x, y, z] = axes.map(|axis| side * reach(axis * side));
-            ParryVector::new(x, y, z)
-        });
-        Aabb::new(mins, maxs)
+        self.bounds.transform_by(position)
     }
 
     /// Those of the library, in closed form for superellipsoids.
     fn mass_properties(&self, density: f64) -> MassProperties {
-        to_parry_mass(&self.mass(density))
+        to_parry_mass(&self.mass, density)
     }
 
     fn shape_type(&self) -> ShapeType {
@@ -271,33 +285,6 @@ impl Shape for ConvexSolid {
     fn as_polygonal_feature_map(&self) -> Option<(&dyn PolygonalFeatureMap, f64)> {
         Some((self, 0.0))
     }
-}
-
-/// The place where a function of one number with one maximum is highest, by golden sections.
-fn highest(mut low: f64, mut high: f64, steps: usize, height: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-    let mut heights = inner.map(&height);
-    for _ in 0..steps {
-        if heights[0] > heights[1] {
-            high = inner[1];
-            inner = [high - GOLDEN * (high - low), inner[0]];
-            heights = [height(inner[0]), heights[0]];
-        } else {
-            low = inner[0];
-            inner = [inner[1], low + GOLDEN * (high - low)];
-            heights = [heights[1], height(inner[1])];
-        }
-    }
-    // the ends themselves may be the best
-    let mut best = (heights[0], inner[0]);
-    for at in [inner[1], low, high] {
-        let found = height(at);
-        if found > best.0 {
-            best = (found, at);
-        }
-    }
-    best.1
 }
 
 /// A vector's components across z.

@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 
 use supersurface::numeric::powers::{quadrant_cos_sin, signed_power};
-use supersurface::shape::{Mass, MassProperties, Superellipsoid, Supertoroid, SupportMap};
+use supersurface::shape::{Superellipsoid, Supertoroid, SupportMap};
 use supersurface::{Point, Vector};
 
 /// A sector's hull in the toroid's frame.
@@ -22,8 +22,6 @@ pub(crate) struct Sector {
     section: Superellipsoid,
     /// The superellipse of the spokes, as a body whose height does not matter.
     spokes: Superellipsoid,
-    /// Share of the whole toroid's mass.
-    share: f64,
 }
 
 impl Sector {
@@ -37,7 +35,7 @@ impl Sector {
         let spoke = |k: usize| spoke(toroid, k as f64 / count as f64 * TAU);
         let sectors = (0..count).map(|k| {
             let ends = [spoke(k), spoke((k + 1) % count)];
-            Self { toroid: *toroid, ends, section, spokes, share: 1.0 / count as f64 }
+            Self { toroid: *toroid, ends, section, spokes }
         });
         Some(sectors.collect())
     }
@@ -62,12 +60,6 @@ impl Sector {
         }
         let along = |p: &[f64; 2]| p[0] * n[0] + p[1] * n[1];
         if along(&from) >= along(&to) { from } else { to }
-    }
-
-    /// An equal share of the whole toroid's mass, as if it were spread over all of it: all sectors together weigh exactly
-    /// what the toroid does.
-    pub(super) fn mass(&self, density: f64) -> Mass {
-        self.toroid.mass_properties(density * self.share)
     }
 }
 

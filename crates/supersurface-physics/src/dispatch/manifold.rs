@@ -5,14 +5,12 @@
 //! exact point is the deepest; without it a round body would sink until its polygon's corners touch.
 
 use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
-use parry3d_f64::query::details::{
-    NormalConstraints, NormalConstraintsPair, contact_support_map_support_map_with_params,
-};
-use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
+use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Shape};
 
 use super::exact::Touch;
+use super::search::{Found, search};
 
 /// A point that normal constraints made more than this many times as deep as the contact is dropped: it is one of a far
 /// part of the other shape.
@@ -31,24 +29,17 @@ pub(super) fn touch_by_search<M, C>(
 ) -> Result<Touch, Unsupported> {
     let (map1, border1) = feature_map(g1)?;
     let (map2, border2) = feature_map(g2)?;
-    let found = contact_support_map_support_map_with_params(
-        pos12,
-        map1,
-        map2,
-        prediction + border1 + border2,
-        &mut VoronoiSimplex::new(),
-        manifold.local_n1.try_normalize(),
-    );
     let facing = |n: ParryVector| [n, pos12.rotation.inverse() * -n];
-    Ok(match found {
-        GJKResult::ClosestPoints(p1, p2, n) => {
+    let middle = |g: &dyn Shape| g.compute_local_aabb().center();
+    let between = || pos12 * middle(g2) - middle(g1);
+    let before = manifold.local_n1.try_normalize().or_else(|| between().try_normalize());
+    let (before, touched) = (before.unwrap_or(ParryVector::X), !manifold.points.is_empty());
+    Ok(match search(pos12, map1, map2, prediction + border1 + border2, before, touched) {
+        Found::Touching([p1, p2], n) => {
             let points = Some([p1, pos12.inverse_transform_point(p2)]);
             Touch { distance: (p2 - p1).dot(n), normals: facing(n), points }
         }
-        GJKResult::NoIntersection(n) => {
-            Touch { distance: f64::INFINITY, normals: facing(n), points: None }
-        }
-        _ => Touch { distance: f64::INFINITY, normals: [ParryVector::ZERO; 2], points: None },
+        Found::Apart(n) => Touch { distance: f64::INFINITY, normals: facing(n), points: None },
     })
 }
 
@@ -109,6 +100,15 @@ pub(super) fn fill_on_half_space<M, C: Default + Copy>(
     let (map, border) = feature_map(body)?;
     let normal = ground.as_halfspace().ok_or(Unsupported)?.normal;
     let down = pose.rotation.inverse() * -normal;
+    let [n1, n2] = if flipped { [down, normal] } else { [normal, down] };
+    [manifold.local_n1, manifold.local_n2] = [n1, n2];
+    // most pieces of a body are far above
+    let bounds = body.compute_local_aabb();
+    let reach = bounds.center().dot(down) + bounds.half_extents().dot(down.abs());
+    if pose.translation.dot(normal) - reach - border > prediction {
+        manifold.points.clear();
+        return Ok(());
+    }
     let mut face = PolygonalFeature::default();
     map.local_support_feature(down, &mut face);
     let lowest = (map.local_support_point(down), PackedFeatureId::UNKNOWN);
@@ -127,8 +127,6 @@ pub(super) fn fill_on_half_space<M, C: Default + Copy>(
             ));
         }
     }
-    let [n1, n2] = if flipped { [down, normal] } else { [normal, down] };
-    [manifold.local_n1, manifold.local_n2] = [n1, n2];
     manifold.match_contacts(&old);
     Ok(())
 }

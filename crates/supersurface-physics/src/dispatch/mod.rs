@@ -14,6 +14,7 @@
 mod exact;
 mod manifold;
 mod query;
+mod search;
 mod supported;
 
 use parry3d_f64::math::Pose as ParryPose;

@@ -1,6 +1,7 @@
 //! Pairs that nothing answers for, found before they fall through each other.
 
 use std::any::{Any, TypeId};
+use std::collections::HashSet;
 
 use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::math::Vector as ParryVector;
@@ -64,13 +65,18 @@ impl Dispatcher {
         colliders: &ColliderSet,
     ) -> Result<(), UnsupportedPair> {
         let all: Vec<_> = colliders.iter().map(|(_, c)| c).collect();
+        let mut seen = HashSet::new();
         for (k, first) in all.iter().enumerate() {
             for second in &all[..k] {
                 let same = first.parent().is_some() && first.parent() == second.parent();
                 let moves = [first, second].iter().any(|c| {
                     c.parent().and_then(|h| bodies.get(h)).is_some_and(|body| body.is_dynamic())
                 });
-                if moves && !same {
+                // shapes with parts may have any
+                let kinds = [first, second].map(|c| (c.shape() as &dyn Any).type_id());
+                let whole =
+                    [first, second].iter().all(|c| c.shape().as_composite_shape().is_none());
+                if moves && !same && (!whole || seen.insert(kinds)) {
                     self.check(first.shape(), second.shape())?;
                 }
             }

@@ -1,12 +1,14 @@
 //! Bodies dropped until they lie still: the one call that makes a pile, a bin or a shelf.
 //!
 //! The fall is rapier's, with this crate's exact contacts and lengths in proportion to the bodies. What it leaves is then
-//! corrected: bodies that still overlap are pushed apart along their contact's normal until every overlap is below
-//! [`SettleOptions::tolerance`] by the exact query. Same input, same bytes, on any number of threads.
+//! corrected: a body alone on a level place is turned to the stable pose that it was rolling to, and bodies that still
+//! overlap are pushed apart along their contact's normal until every overlap is below [`SettleOptions::tolerance`] by the
+//! exact query. Same input, same bytes, on any number of threads.
 //!
-//! What is not guaranteed: rest is rapier's sleep, slower than [`SettleOptions::still`] for half a second; a tall
-//! stack may creep for longer than [`SettleOptions::time_limit`] and is then reported as not at rest.
+//! What is not guaranteed: rest is a place that a body has not left for half a second, as [`SettleOptions::still`] says; a
+//! tall stack may creep for longer than [`SettleOptions::time_limit`] and is then reported as not at rest.
 
+mod lowest;
 mod overlap;
 mod scene;
 mod world;
@@ -75,8 +77,8 @@ pub struct SettleOptions {
     pub rate: f64,
     /// Seconds after which the simulation ends, at rest or not.
     pub time_limit: f64,
-    /// A body is still when no point of it is faster than this share of `√(g r)`, the speed of a fall through half
-    /// its size `r`; when half of the time is over it grows, to ten times this.
+    /// A body is still when in half a second no point of it gets farther than at this share of `√(g r)`, the speed of a fall
+    /// through half its size `r`; when a quarter of the time is over it grows, to ten times this.
     pub still: f64,
     /// Rolling and rocking die out in this many times `√(r/g)`.
     pub rocking: f64,
@@ -188,9 +190,13 @@ pub fn settle(
     check(bodies, ground, options)?;
     let mut world = world::Fall::new(bodies, ground, options)?;
     let time = world.run(options);
-    let mut rests: Vec<Rest> = world.rests();
+    let mut rests: Vec<Rest> = world.rests(options.rate);
     let mut layout = world.layout();
     let simulated_overlap = layout.deepest();
+    let down = convert::from_vector(&options.gravity.normalize());
+    for (body, _) in rests.iter().enumerate().filter(|(_, rest)| rest.at_rest) {
+        layout.lower(body, world.shape(body), down, options.tolerance);
+    }
     let overlap = layout.separate(options.tolerance);
     for (rest, pose) in rests.iter_mut().zip(layout.poses()) {
         rest.pose = convert::to_pose(pose);

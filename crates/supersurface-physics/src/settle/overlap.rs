@@ -21,7 +21,7 @@ pub(super) struct Item {
 
 /// Everything where it lies.
 pub(super) struct Layout {
-    items: Vec<Item>,
+    pub(super) items: Vec<Item>,
     poses: Vec<ParryPose>,
     masses: Vec<f64>,
 }
@@ -36,12 +36,12 @@ impl Layout {
         &self.poses
     }
 
-    fn pose(&self, item: &Item) -> ParryPose {
+    pub(super) fn pose(&self, item: &Item) -> ParryPose {
         item.body.map_or(item.local, |body| self.poses[body] * item.local)
     }
 
     /// Pairs of items of different bodies whose boxes, wider by a margin, meet.
-    fn near(&self, margin: f64) -> Vec<[usize; 2]> {
+    pub(super) fn near(&self, margin: f64) -> Vec<[usize; 2]> {
         let boxes: Vec<Aabb> = self
             .items
             .iter()
@@ -65,6 +65,16 @@ impl Layout {
         let found = Dispatcher.contact(&at_a.inv_mul(&at_b), &*a.shape, &*b.shape, 0.0);
         let contact = found.ok().flatten()?;
         (contact.dist < 0.0).then(|| (-contact.dist, at_a.rotation * contact.normal1))
+    }
+
+    /// Puts a body somewhere else if it overlaps nothing there by more than `tolerance` metres.
+    pub(super) fn put(&mut self, body: usize, pose: ParryPose, tolerance: f64) {
+        let before = std::mem::replace(&mut self.poses[body], pose);
+        let own = |pair: &[usize; 2]| pair.iter().any(|i| self.items[*i].body == Some(body));
+        let mut depths = self.near(0.0).into_iter().filter(own).filter_map(|p| self.overlap(p));
+        if depths.any(|(depth, _)| depth > tolerance) {
+            self.poses[body] = before;
+        }
     }
 
     /// The deepest overlap in metres, 0 for none.

@@ -1,6 +1,6 @@
 //! The fall: a rapier world with lengths, speeds and damping in proportion to the bodies.
 
-use parry3d_f64::math::{Pose as ParryPose, Vector as ParryVector};
+use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector as ParryVector};
 use parry3d_f64::shape::SharedShape;
 use rapier3d_f64::dynamics::{
     IntegrationParameters, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
@@ -17,8 +17,10 @@ use crate::shape::shape;
 
 /// Contacts are predicted from this share of a body's half size on.
 const PREDICTION: f64 = 0.1;
-/// A pair's contacts are taken from the step before while it moved by less than this share of the half size.
-const RECYCLED: f64 = 2e-4;
+/// A pair's contacts are taken from the step before while it moved by less than this share of the half size, and at most
+/// [`FARTHEST`] metres.
+const RECYCLED: f64 = 2e-3;
+const FARTHEST: f64 = 4e-5;
 /// What rapier counts as touching, as a share of the half size.
 const SLOP: f64 = 1e-3;
 /// Bodies keep this distance, as a share of the smallest half size, and at most [`WIDEST_SKIN`] metres.
@@ -29,10 +31,27 @@ const WIDEST_SKIN: f64 = 2e-5;
 const STIFFNESS: [f64; 2] = [0.35, 0.25];
 /// Their damping ratio, rapier's default.
 const DAMPING: f64 = 10.0;
-/// By what the speed of rest has grown when the time is over.
+/// The share of the time after which the speed of rest grows, and by what it has grown when the time is over.
+const PATIENT: f64 = 0.25;
 const LATE: f64 = 10.0;
 /// How far below everything a body is lost, in its sizes.
 const LOST: f64 = 4.0;
+
+/// Seconds for which a body must have stayed in place.
+const WATCHED: f64 = 0.5;
+
+/// Where a body was when it last moved, and for how many steps it has been there since.
+#[derive(Clone, Copy)]
+struct Watch {
+    place: ParryVector,
+    turn: Rotation,
+    still: f64,
+}
+
+/// By what the speed of rest has grown when a share of the time is over.
+fn grown(share: f64) -> f64 {
+    1.0 + (LATE - 1.0) * ((share - PATIENT) / (1.0 - PATIENT)).max(0.0)
+}
 
 /// A world of falling bodies.
 pub(super) struct Fall {
@@ -42,6 +61,7 @@ pub(super) struct Fall {
     bodies: Vec<(Vec<(ParryPose, SharedShape)>, f64)>,
     ground: Vec<(ParryPose, SharedShape)>,
     lost: Vec<bool>,
+    watched: Vec<Watch>,
     /// Below this height along gravity nothing is left to lie on, apart from the floor.
     lowest: f64,
 }
@@ -84,6 +104,8 @@ impl Fall {
         world.gravity = from_vector(&options.gravity);
         world.narrow_phase.set_query_dispatcher(Dispatcher);
         world.integration_parameters = integration_parameters(smallest, options.rate);
+        // soft CCD sees what comes
+        world.integration_parameters.max_ccd_substeps = 0;
         let skin = 0.5 * (SKIN * smallest).min(WIDEST_SKIN);
         for (pose, shape) in &statics {
             let collider = ColliderBuilder::new(shape.clone())
@@ -115,32 +137,55 @@ impl Fall {
         }
         Dispatcher.check_world(&world.bodies, &world.colliders)?;
         let lost = vec![false; handles.len()];
-        Ok(Self { world, handles, bodies, ground: statics, lost, lowest })
+        let start = Watch { place: ParryVector::ZERO, turn: Rotation::IDENTITY, still: 0.0 };
+        let watched = vec![start; handles.len()];
+        Ok(Self { world, handles, bodies, ground: statics, lost, watched, lowest })
     }
 
     /// Steps until all lie still or the time is over; returns the simulated seconds.
     pub(super) fn run(&mut self, options: &SettleOptions) -> f64 {
         let steps = (options.time_limit * options.rate) as usize;
         for step in 0..steps {
-            if self.handles.iter().all(|h| self.world.bodies[*h].is_sleeping()) {
+            if self.watched.iter().all(|watch| watch.still >= options.rate * WATCHED) {
                 return step as f64 / options.rate;
             }
             self.be_still(options, step as f64 / steps as f64);
             self.world.step();
+            self.watch(options, step as f64 / steps as f64);
             self.drop_lost(options);
         }
         steps as f64 / options.rate
     }
 
-    /// Sets the speeds below which bodies are still: those of the options until half of the time is over, then growing, so
-    /// that what only trembles comes to rest.
+    /// Sets the speeds below which bodies are still: those of the options until a quarter of the time is over, then growing,
+    /// so that what only trembles comes to rest.
     fn be_still(&mut self, options: &SettleOptions, share: f64) {
-        let grown = 1.0 + (LATE - 1.0) * (2.0 * share - 1.0).max(0.0);
+        let grown = grown(share);
         let g = options.gravity.norm();
         for (handle, (_, half)) in self.handles.iter().zip(&self.bodies) {
             if let Some(body) = self.world.bodies.get_mut(*handle) {
                 let speed = options.still * (g * half).sqrt();
                 body.activation_mut().normalized_linear_threshold = grown * speed;
+            }
+        }
+    }
+
+    /// Counts for how many steps each body has stayed where it is, give or take what a body that is still may move in half a
+    /// second. What trembles in place is still, however fast.
+    fn watch(&mut self, options: &SettleOptions, share: f64) {
+        let allowed = grown(share) * options.still * WATCHED;
+        let g = options.gravity.norm();
+        let bodies = self.handles.iter().zip(&self.bodies).zip(&mut self.watched);
+        for ((handle, (_, half)), watch) in bodies {
+            let body = &self.world.bodies[*handle];
+            let (place, turn) = (body.center_of_mass(), body.position().rotation);
+            let turned = watch.turn.inverse() * turn;
+            let angle = 2.0 * turned.xyz().length();
+            let way = (place - watch.place).length() + angle * half;
+            if way <= allowed * (g * half).sqrt() || body.is_sleeping() {
+                watch.still += 1.0;
+            } else {
+                *watch = Watch { place, turn, still: 0.0 };
             }
         }
     }
@@ -160,13 +205,19 @@ impl Fall {
         }
     }
 
-    pub(super) fn rests(&self) -> Vec<Rest> {
-        let rest = |(handle, lost): (&RigidBodyHandle, &bool)| {
+    /// Half the size of a body in metres, and its centre of mass in its frame.
+    pub(super) fn shape(&self, body: usize) -> (f64, ParryVector) {
+        let rigid = &self.world.bodies[self.handles[body]];
+        (self.bodies[body].1, rigid.local_center_of_mass())
+    }
+
+    pub(super) fn rests(&self, rate: f64) -> Vec<Rest> {
+        let rest = |((handle, lost), watch): ((&RigidBodyHandle, &bool), &Watch)| {
             let body = &self.world.bodies[*handle];
-            let at_rest = body.is_sleeping() && !lost;
+            let at_rest = watch.still >= WATCHED * rate && !lost;
             Rest { pose: to_pose(body.position()), at_rest, lost: *lost }
         };
-        self.handles.iter().zip(&self.lost).map(rest).collect()
+        self.handles.iter().zip(&self.lost).zip(&self.watched).map(rest).collect()
     }
 
     /// All shapes where they are now.
@@ -204,7 +255,7 @@ pub fn integration_parameters(half_size: f64, rate: f64) -> IntegrationParameter
         dt: rate.recip(),
         normalized_prediction_distance: PREDICTION * half_size,
         normalized_allowed_linear_error: SLOP * half_size,
-        normalized_contact_recycle_distance: RECYCLED * half_size,
+        normalized_contact_recycle_distance: (RECYCLED * half_size).min(FARTHEST),
         contact_softness: spring(between),
         static_contact_softness: spring(ground),
         ..IntegrationParameters::default()

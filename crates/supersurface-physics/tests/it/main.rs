@@ -1,5 +1,6 @@
 //! Integration tests of the physics, one binary.
 
+mod households;
 mod manifolds;
 mod piles;
 mod rest;

@@ -58,12 +58,12 @@ fn floor(kind: u64, half: f64) -> Ground {
     ground
 }
 
-/// Semi-axes up to 1 cm to 1 m, exponents 0.1 to 1.9. Half a millimetre holds for all sizes; a degree for all but one body in
-/// fifty. `SUPERSURFACE_RESTS` says how many are dropped.
+/// Semi-axes up to 1 cm to 1 m, exponents 0.1 to 1.9: within half a millimetre and a degree. `SUPERSURFACE_RESTS` says how
+/// many are dropped.
 #[test]
 fn bodies_rest_on_stable_poses() {
     let count = scenes::count("SUPERSURFACE_RESTS", 18);
-    let (mut still, mut off) = (0, 0);
+    let mut wrong = Vec::new();
     let mut worst = [0.0f64; 2];
     for k in 0..count {
         let mut random = Stream::new(3, k);
@@ -81,15 +81,13 @@ fn bodies_rest_on_stable_poses() {
         let goal = stable(&solid, &down);
         let angle = down.angle(&goal).to_degrees();
         let height = (pose.translation.z - solid.support(&goal)).abs();
-        still += u64::from(settled.bodies[0].at_rest);
         worst = [worst[0].max(angle), worst[1].max(height)];
-        assert!(height < 5e-4 && angle < 5.0, "{k}: {solid:?}, {angle} degrees, {height} m");
-        off += u64::from(angle >= 1.0);
+        if !(settled.all_at_rest() && height < 5e-4 && angle < 1.0) {
+            wrong.push(format!("{k}: {angle} degrees, {height} m, {settled:?} of {solid:?}"));
+        }
     }
-    let figures = format!("{still} of {count} at rest, {off} off by a degree; worst {worst:?}");
-    // what is almost a ball rolls so slowly near its stable pose that it counts as still
-    assert!(off * 50 <= count, "{figures}");
-    assert!(still * 10 >= count * 9, "{figures}");
+    let figures = format!("{count} bodies, worst {worst:?}");
     // shown by --nocapture
     std::io::Write::write_all(&mut std::io::stderr(), figures.as_bytes()).unwrap();
+    assert!(wrong.is_empty(), "{} of {figures}:\n{}", wrong.len(), wrong.join("\n"));
 }

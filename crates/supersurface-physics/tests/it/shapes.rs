@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use supersurface::measure::{ClosestFinder, first_hit};
+use supersurface::numeric::powers::power;
 use supersurface::numeric::random::Stream;
+use supersurface::numeric::superellipse::dual_norm;
 use supersurface::shape::{
     Implicit, MassProperties, Parametric, Posed, Ray, Superellipsoid, Supertoroid, SupportMap,
 };
@@ -94,6 +96,42 @@ fn pieces_reach_as_far_as_the_solid() {
             assert!((found - truth).abs() < 0.01 * size, "{surface:?} {found} {truth}");
         }
     }
+}
+
+#[test]
+fn convex_tapered_solids_reach_exactly_as_far() {
+    let mut random = Stream::new(9, 0);
+    let mut convex = 0;
+    for _ in 0..60 {
+        let axes = [0; 3].map(|_| random.between(0.02, 0.1));
+        let exponents = [0; 2].map(|_| random.between(0.1, 1.9));
+        let slopes = [0; 2].map(|_| random.between(-0.3, 0.3));
+        let solid = superellipsoid(axes, exponents);
+        let shape = shape(&Surface::tapered(solid, slopes).unwrap()).unwrap();
+        let Some(map) = shape.as_support_map() else { continue };
+        convex += 1;
+        let truth = |n: &Vector| {
+            // of sections at many heights
+            let heights = (0..=20_000).map(|k| (TAU * k as f64 / 40_000.0 - TAU / 4.0).sin());
+            let reach = |t: f64| {
+                let r = power((1.0 - power(t, 2.0 / exponents[0])).max(0.0), 0.5 * exponents[0]);
+                let [w1, w2] = [0, 1].map(|k| axes[k] * (1.0 + slopes[k] * t) * r);
+                axes[2] * t * n.z + dual_norm((w1 * n.x).abs(), (w2 * n.y).abs(), exponents[1])
+            };
+            heights.map(reach).fold(f64::NEG_INFINITY, f64::max)
+        };
+        for _ in 0..20 {
+            let n = Vector::from_fn(|_, _| random.normal()).normalize();
+            let found = to_vector(map.local_support_point(from_vector(&n))).dot(&n);
+            let off = found - truth(&n);
+            assert!(off > -1e-12 && off < 1e-6, "{exponents:?} {slopes:?} {n}: {off}");
+        }
+        for n in [Vector::z(), -Vector::z(), Vector::x()] {
+            let found = map.local_support_point(from_vector(&n));
+            assert!((to_vector(found).dot(&n) - truth(&n)).abs() < 1e-6);
+        }
+    }
+    assert!(convex > 20);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Matrix3;
 
-use super::{Deformation, range, sinc};
+use super::{Deformation, Sections, range, sinc};
 use crate::shape::{Implicit, InvalidShape};
 use crate::{Point, Vector};
 
@@ -101,6 +101,10 @@ impl Deformation for Bend {
         Matrix3::identity()
             + n * (n * (cos - 1.0) + z * (h * sin)).transpose()
             + z * (n * -sin + z * (h * cos - 1.0)).transpose()
+    }
+
+    fn sections(&self) -> Sections {
+        Sections::Moved
     }
 
     fn check_over(&self, solid: &dyn Implicit) -> Result<(), InvalidShape> {

@@ -1,8 +1,8 @@
 //! Mass of deformed solids: integrals over the solid before the deformation, `∫ f(T(x)) det J(x) dV` (FORMULAS §4).
 
-use super::{Deformation, Deformed};
+use super::{Deformation, Deformed, Sections};
 use crate::Point;
-use crate::shape::{Filled, Mass, MassEstimate, MassProperties, filled_mass};
+use crate::shape::{Filled, Mass, MassEstimate, MassProperties, filled_mass, mass_of_sections};
 
 impl<S: Filled, D: Deformation> Filled for Deformed<S, D> {
     fn pieces(&self) -> usize {
@@ -14,6 +14,15 @@ impl<S: Filled, D: Deformation> Filled for Deformed<S, D> {
         self.shape().along(piece, at, shares, &mut |p, volume| {
             each(map.forward(&p), volume * map.jacobian(&p).determinant());
         });
+    }
+
+    fn sections(&self, rule: &[[f64; 2]], each: &mut dyn FnMut(Point, f64)) -> bool {
+        let map = self.deformation();
+        // sections that have moved are not at their heights any more
+        map.sections() == Sections::Kept
+            && self.shape().sections(rule, &mut |p, volume| {
+                each(map.forward(&p), volume * map.jacobian(&p).determinant());
+            })
     }
 }
 
@@ -33,7 +42,13 @@ impl<S: Filled, D: Deformation> MassProperties for Deformed<S, D> {
     /// # Ok::<(), supersurface::shape::InvalidShape>(())
     /// ```
     fn mass_estimate(&self, density: f64) -> MassEstimate {
-        filled_mass(self, density)
+        let map = self.deformation();
+        let moved = |p: &Point| (map.forward(p), map.jacobian(p).determinant());
+        let by_sections = match map.sections() {
+            Sections::Kept | Sections::Moved => mass_of_sections(self.shape(), moved, density),
+            Sections::Curved => None,
+        };
+        by_sections.unwrap_or_else(|| filled_mass(self, density))
     }
 }
 
@@ -57,6 +72,27 @@ mod tests {
                 let ring = Supertoroid::new([0.2, 0.3, 0.4], 2.0, [e1, e2]).unwrap();
                 close(&filled_mass(&ring, 3.0), &ring.mass_properties(3.0), 1e-5);
             }
+        }
+    }
+
+    #[test]
+    fn sections_weigh_what_lines_do() {
+        for e in [[0.1, 1.0], [0.2, 0.1], [0.7, 1.4], [1.9, 0.3]] {
+            let shape = Superellipsoid::new([0.2, 0.3, 1.1], e).unwrap();
+            let taper = Taper::new([0.5, -0.7], 1.1).unwrap();
+            let tapered = Deformed::new(shape, taper).unwrap();
+            let bend = Bend::new(1.5, 0.7).unwrap();
+            let bent = Deformed::new(tapered, bend).unwrap();
+            let twisted = Deformed::new(tapered, Twist::new(0.4, 1.1).unwrap()).unwrap();
+            let sheared = Deformed::new(shape, ShearBend::new(2.0).unwrap()).unwrap();
+            close(&tapered.mass_estimate(3.0), &filled_mass(&tapered, 3.0).mass, 1e-5);
+            close(&bent.mass_estimate(3.0), &filled_mass(&bent, 3.0).mass, 1e-5);
+            close(&twisted.mass_estimate(3.0), &filled_mass(&twisted, 3.0).mass, 1e-5);
+            close(&sheared.mass_estimate(3.0), &filled_mass(&sheared, 3.0).mass, 1e-5);
+            // a taper of what is bent does not meet plane sections
+            let bent = Deformed::new(shape, bend).unwrap();
+            let both = Deformed::new(bent, Taper::new([0.2, 0.3], 1.1).unwrap()).unwrap();
+            close(&both.mass_estimate(3.0), &filled_mass(&both, 3.0).mass, 1e-12);
         }
     }
 

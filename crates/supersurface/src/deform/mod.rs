@@ -39,6 +39,17 @@ pub use twist::Twist;
 use crate::shape::{Implicit, InvalidShape};
 use crate::{Point, Vector};
 
+/// What becomes of a solid's sections across z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sections {
+    /// Each stays at its height; the map is linear on it and its determinant constant.
+    Kept,
+    /// Each is a plane somewhere; the map and its determinant are linear on it.
+    Moved,
+    /// They are no planes any more.
+    Curved,
+}
+
 /// A smooth map of a shape's own coordinates, one to one over the solids that
 /// [`check_over`](Self::check_over) accepts.
 ///
@@ -54,6 +65,11 @@ pub trait Deformation {
 
     /// `∂ forward_i / ∂p_j` at an undeformed point.
     fn jacobian(&self, p: &Point) -> Matrix3<f64>;
+
+    /// What becomes of sections across z. Where they stay plane, mass is an integral along z alone.
+    fn sections(&self) -> Sections {
+        Sections::Curved
+    }
 
     /// Fails with the quantity that is out of range unless the map is one to one over the solid.
     fn check_over(&self, solid: &dyn Implicit) -> Result<(), InvalidShape>;

@@ -5,7 +5,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Deformation, range};
+use super::{Deformation, Sections, range};
 use crate::shape::{Implicit, InvalidShape};
 use crate::{Point, Vector};
 
@@ -54,6 +54,10 @@ impl Deformation for ShearBend {
     fn jacobian(&self, p: &Point) -> Matrix3<f64> {
         let slope = (p.z / self.radius.hypot(p.z)).copysign(p.z * self.radius);
         Matrix3::new(1.0, 0.0, -slope, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    }
+
+    fn sections(&self) -> Sections {
+        Sections::Kept
     }
 
     fn check_over(&self, _solid: &dyn Implicit) -> Result<(), InvalidShape> {

@@ -4,7 +4,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Deformation, range};
+use super::{Deformation, Sections, range};
 use crate::shape::{Implicit, InvalidShape};
 use crate::{Point, Vector};
 
@@ -72,6 +72,10 @@ impl Deformation for Taper {
         let ([kx, ky], [fx, fy]) = (self.slopes, self.factors(p.z));
         let h = self.half_height;
         Matrix3::new(fx, 0.0, kx * (p.x / h), 0.0, fy, ky * (p.y / h), 0.0, 0.0, 1.0)
+    }
+
+    fn sections(&self) -> Sections {
+        Sections::Kept
     }
 
     fn check_over(&self, solid: &dyn Implicit) -> Result<(), InvalidShape> {

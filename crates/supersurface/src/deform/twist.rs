@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use nalgebra::Matrix3;
 
 use super::taper::check_height;
-use super::{Deformation, range};
+use super::{Deformation, Sections, range};
 use crate::shape::{Implicit, InvalidShape};
 use crate::{Point, Vector};
 
@@ -72,6 +72,10 @@ impl Deformation for Twist {
         let rate = self.turns * PI / self.half_height;
         let moved = self.forward(p);
         Matrix3::new(c, -s, -rate * moved.y, s, c, rate * moved.x, 0.0, 0.0, 1.0)
+    }
+
+    fn sections(&self) -> Sections {
+        Sections::Kept
     }
 
     fn check_over(&self, _solid: &dyn Implicit) -> Result<(), InvalidShape> {

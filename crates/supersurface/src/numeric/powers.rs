@@ -3,6 +3,8 @@
 //! This is the one place where `f64::powf` is called; everything else goes through the norms of
 //! [`super::superellipse`] or these helpers.
 
+use super::lanes::{exp, ln};
+
 /// `sgn(b) |b|^s` with `0^s = 0` (FORMULAS §0, `spow`).
 ///
 /// ```
@@ -20,6 +22,19 @@ pub fn signed_power(b: f64, s: f64) -> f64 {
 #[inline]
 pub fn power(b: f64, s: f64) -> f64 {
     signed_power(b.abs(), s)
+}
+
+/// `b^s` of a positive `b`, within `3e-16 (1 + |s ln b|)` of it: several times as fast as [`power`]. Powers beyond
+/// `e^±700` are `e^±700`.
+///
+/// ```
+/// use supersurface::numeric::powers::quick_power;
+/// assert!((quick_power(0.3, 1.7) - 0.3f64.powf(1.7)).abs() < 1e-15);
+/// ```
+#[inline]
+pub fn quick_power(b: f64, s: f64) -> f64 {
+    let log = if b >= f64::MIN_POSITIVE { ln::<false>(b) } else { b.ln() };
+    exp::<false>(s * log)
 }
 
 /// Derivative of [`signed_power`] by `b`: `s |b|^(s-1)`; `None` where it is infinite (`b = 0`, `s < 1`).

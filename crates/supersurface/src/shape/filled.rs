@@ -13,6 +13,8 @@ use crate::{Point, Vector};
 
 /// Nodes a side: the second time twice as many, and so on while the error is above [`ENOUGH`].
 const NODES: [usize; 4] = [8, 16, 32, 48];
+/// The same where an integral is along a line.
+const NODES_OF_A_LINE: [usize; 4] = [16, 32, 64, 128];
 /// Relative error at which no more nodes are taken.
 const ENOUGH: f64 = 1e-7;
 
@@ -33,6 +35,12 @@ pub trait Filled {
     /// Calls `each` with points at the `shares` (in (0, 1)) of the line that stands at `at` (in (0, 1)²) in a piece, and
     /// with their volume element in m³ by the three numbers. A piece that does not exist is the last one.
     fn along(&self, piece: usize, at: [f64; 2], shares: &[f64], each: &mut dyn FnMut(Point, f64));
+
+    /// Calls `each` with points and weights that integrate, in m³, every function that is a cubic polynomial across z at
+    /// each height; along z by a rule of nodes and weights on (0, 1). False, and no call, where no such points are known.
+    fn sections(&self, _rule: &[[f64; 2]], _each: &mut dyn FnMut(Point, f64)) -> bool {
+        false
+    }
 }
 
 impl<S: Filled + ?Sized> Filled for Box<S> {
@@ -43,14 +51,51 @@ impl<S: Filled + ?Sized> Filled for Box<S> {
     fn along(&self, piece: usize, at: [f64; 2], shares: &[f64], each: &mut dyn FnMut(Point, f64)) {
         (**self).along(piece, at, shares, each);
     }
+
+    fn sections(&self, rule: &[[f64; 2]], each: &mut dyn FnMut(Point, f64)) -> bool {
+        (**self).sections(rule, each)
+    }
 }
 
 /// Mass properties by integration along the lines.
 pub(crate) fn filled_mass(solid: &(impl Filled + ?Sized), density: f64) -> MassEstimate {
-    let [first, more @ ..] = NODES;
-    let mut found = MassEstimate { mass: moments(solid, first).mass(1.0), error: f64::INFINITY };
-    for nodes in more {
-        found = MassEstimate::refined(&found.mass, moments(solid, nodes).mass(1.0));
+    refined(NODES, density, |nodes| moments(solid, nodes))
+}
+
+/// Mass properties by integration along z of what a solid's [`Filled::sections`], moved by a map, say; `None` where they say
+/// nothing. The map and its volume element are linear across z.
+pub(crate) fn mass_of_sections(
+    solid: &impl Filled,
+    map: impl Fn(&Point) -> (Point, f64),
+    density: f64,
+) -> Option<MassEstimate> {
+    let mut known = true;
+    let found = refined(NODES_OF_A_LINE, density, |nodes| {
+        let mut sum = Moments::nothing();
+        known &= solid.sections(&Rule::drawn_to_ends(nodes).nodes, &mut |p, volume| {
+            let (moved, share) = map(&p);
+            sum.add(volume * share, &moved.coords);
+        });
+        sum
+    });
+    known.then_some(found)
+}
+
+/// Twice as many nodes until the error is small.
+fn refined<const N: usize>(
+    counts: [usize; N],
+    density: f64,
+    mut moments: impl FnMut(usize) -> Moments,
+) -> MassEstimate {
+    let nothing = Moments::nothing().mass(1.0);
+    let mut found = MassEstimate { mass: nothing, error: f64::INFINITY };
+    for (k, nodes) in counts.into_iter().enumerate() {
+        let finer = moments(nodes).mass(1.0);
+        if k == 0 {
+            found.mass = finer;
+            continue;
+        }
+        found = MassEstimate::refined(&found.mass, finer);
         if found.error < ENOUGH {
             break;
         }

@@ -31,7 +31,7 @@ pub use curvature::{Curvature, FundamentalForms};
 pub use error::InvalidShape;
 pub use extended::{ExtendedSuperellipsoid, RadialExtended};
 pub use filled::Filled;
-pub(crate) use filled::filled_mass;
+pub(crate) use filled::{filled_mass, mass_of_sections};
 pub use hyperquadric::{Hyperquadric, HyperquadricForm};
 pub(crate) use mass::Moments;
 pub use mass::{Mass, MassEstimate};

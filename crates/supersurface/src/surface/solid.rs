@@ -204,6 +204,10 @@ impl Filled for Solid {
     fn along(&self, piece: usize, at: [f64; 2], shares: &[f64], each: &mut dyn FnMut(Point, f64)) {
         self.filled().along(piece, at, shares, each);
     }
+
+    fn sections(&self, rule: &[[f64; 2]], each: &mut dyn FnMut(Point, f64)) -> bool {
+        self.filled().sections(rule, each)
+    }
 }
 
 /// In closed form for the members but the last two, by integration for these and for what is deformed.

@@ -1,8 +1,8 @@
 //! Support point in closed form (FORMULAS §9).
 
 use super::Superellipsoid;
-use crate::numeric::powers::power;
-use crate::numeric::superellipse::dual_norm;
+use crate::numeric::powers::quick_power;
+use crate::numeric::superellipse::dual_exponent;
 use crate::shape::SupportMap;
 use crate::{Point, Vector};
 
@@ -14,8 +14,8 @@ impl SupportMap for Superellipsoid {
         let [a1, a2, a3] = self.semi_axes;
         let [e1, e2] = self.exponents;
         let u = [(a1 * n.x).abs(), (a2 * n.y).abs(), (a3 * n.z).abs()];
-        let g = dual_norm(u[0], u[1], e2);
-        let h = dual_norm(g, u[2], e1);
+        let (g, [x, y]) = touched(u[0], u[1], e2);
+        let (h, [planar, z]) = touched(g, u[2], e1);
         if h == 0.0 || !h.is_finite() {
             let largest = n.amax();
             return match h == f64::INFINITY && largest > 1.0 && largest.is_finite() {
@@ -23,8 +23,6 @@ impl SupportMap for Superellipsoid {
                 false => Point::origin(),
             };
         }
-        let [planar, z] = dual_shares(g, u[2], h, e1);
-        let [x, y] = if g > 0.0 { dual_shares(u[0], u[1], g, e2) } else { [0.0; 2] };
         Point::new(
             (a1 * x * planar).copysign(n.x),
             (a2 * y * planar).copysign(n.y),
@@ -33,10 +31,26 @@ impl SupportMap for Superellipsoid {
     }
 }
 
-/// `(part/whole)^(ε/(2-ε))` of both parts; for ε >= 2 the larger takes all, of equal ones the first.
-fn dual_shares(first: f64, second: f64, whole: f64, epsilon: f64) -> [f64; 2] {
-    if epsilon >= 2.0 {
-        return if first >= second { [1.0, 0.0] } else { [0.0, 1.0] };
+/// The dual norm of a non-negative pair, and `(part/norm)^(q-1)` of both parts: where the unit curve of the exponent is
+/// touched. With `r = small/large` and `q = 2/(2-ε)` the larger part has `(1 + r^q)^(-ε/2)`, which times `1 + r^q` is the
+/// norm, too. For ε >= 2 the larger takes all, of equal ones the first.
+fn touched(first: f64, second: f64, epsilon: f64) -> (f64, [f64; 2]) {
+    let in_order = |large: f64, small: f64| match first >= second {
+        true => [large, small],
+        false => [small, large],
+    };
+    let [large, small] = in_order(first, second);
+    let ratio = small / large;
+    if epsilon >= 2.0 || small == 0.0 || ratio == 0.0 || large == f64::INFINITY {
+        return (large, in_order(1.0, 0.0));
     }
-    [first, second].map(|part| power(part / whole, epsilon / (2.0 - epsilon)))
+    if epsilon == 1.0 {
+        let m = (1.0 + ratio * ratio).sqrt();
+        return (large * m, in_order(1.0 / m, ratio / m));
+    }
+    let q = dual_exponent(epsilon);
+    let other = quick_power(ratio, q - 1.0);
+    let t = ratio * other;
+    let share = quick_power(1.0 + t, -0.5 * epsilon);
+    (large * (1.0 + t) * share, in_order(share, other * share))
 }
