@@ -29,7 +29,7 @@ pub(super) fn run(args: &DatasetArgs) -> Result<(), Failure> {
     if let Some(warning) = fewer {
         progress.warn(&warning);
     }
-    let things = recipes(&args.make)?;
+    let things = recipes(&args.make.things, &args.make.noise)?;
     folder(&args.output)?;
     same_data_set(args)?;
     let missing: Vec<u32> = (0..args.scenes).filter(|k| !place(args, *k).exists()).collect();

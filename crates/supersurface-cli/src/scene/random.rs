@@ -15,7 +15,7 @@ pub(super) fn run(args: &RandomArgs) -> Result<(), Failure> {
     if let Some(warning) = fewer {
         progress.warn(&warning);
     }
-    let things = recipes(&args.make)?;
+    let things = recipes(&args.make.things, &args.make.noise)?;
     // before the long work, so that a folder that cannot be made is known at once
     folder(&args.output)?;
     let say = |stage, what| progress.begin(stage, what);
