@@ -75,7 +75,7 @@ impl Sum {
             all.sort_by(f64::total_cmp);
             let middle = all.len() / 2;
             let high = all.get(middle).copied().unwrap_or(f64::NAN);
-            let low = if all.len() % 2 == 0 { middle.saturating_sub(1) } else { middle };
+            let low = if all.len().is_multiple_of(2) { middle.saturating_sub(1) } else { middle };
             0.5 * (high + all.get(low).copied().unwrap_or(f64::NAN))
         };
         Self {
