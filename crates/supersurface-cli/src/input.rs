@@ -162,7 +162,9 @@ pub(crate) fn pose(option: &str, numbers: &[f64]) -> Result<Pose, Failure> {
                     "the matrix is no rigid pose (rows of rotation and translation)".into(),
                 ));
             }
-            let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&r));
+            // without a limit the search may go on for ever
+            let turn = Rotation3::from_matrix_eps(&r, f64::EPSILON, 100, Rotation3::identity());
+            let turn = UnitQuaternion::from_rotation_matrix(&turn);
             (Vector::new(m[3], m[7], m[11]), turn)
         }
         _ => return Err(wrong(format!("{} numbers: 7 or 16 are needed", numbers.len()))),

@@ -72,6 +72,7 @@ pub use scene::{
     read_scene, write_scene,
 };
 pub use shape_json::{Model, parse_shape, read_shape};
+pub use surface_row::surface_json;
 pub use things::{BUILT_IN_THINGS, read_things};
 pub use view_files::write_view;
 pub use write::{write_png, write_text};

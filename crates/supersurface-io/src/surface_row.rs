@@ -73,3 +73,17 @@ impl SurfaceRow {
         }
     }
 }
+
+/// A surface with its pose as a JSON object: the named form of `docs/fit.md`.
+///
+/// ```
+/// use supersurface::{Pose, shape::{Posed, Superellipsoid}, surface::Surface};
+/// let egg = Surface::Superellipsoid(Superellipsoid::new([0.03, 0.02, 0.02], [1.0; 2])?);
+/// let value = supersurface_io::surface_json(&Posed::new(egg, Pose::identity())?);
+/// assert_eq!(value["semi_axes"][0], 0.03);
+/// # Ok::<(), supersurface::shape::InvalidShape>(())
+/// ```
+pub fn surface_json(surface: &Posed<Surface>) -> serde_json::Value {
+    // plain structs of numbers: serialisation has nothing to fail on
+    serde_json::to_value(SurfaceRow::new(surface)).unwrap_or_default()
+}

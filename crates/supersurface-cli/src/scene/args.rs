@@ -20,6 +20,8 @@ pub(super) enum SceneCommand {
     Random(RandomArgs),
     /// Many such scenes for training. What a run that was cut off left is kept and completed by the next.
     Dataset(DatasetArgs),
+    /// Closes the loop: makes single things, looks at them, finds and fits them, and says how many come back as they are.
+    Recover(RecoverArgs),
 }
 
 #[derive(Debug, Args)]
@@ -64,6 +66,33 @@ pub(super) struct DatasetArgs {
     pub(super) quiet: bool,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct RecoverArgs {
+    /// Number of scenes, each of one thing.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) scenes: u32,
+    /// Seed of the first scene; the others follow.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// What is drawn: a TOML file (docs/scene.md), or members. Things have one part each.
+    #[arg(long, value_name = "NAME|FILE", default_value = "members")]
+    pub(super) things: String,
+    #[command(flatten)]
+    pub(super) noise: NoiseArgs,
+    /// Folder for the truth and the result of each scene, and for views of those that were missed.
+    #[arg(long, short, value_name = "FOLDER")]
+    pub(super) output: Option<PathBuf>,
+    /// Number of threads; results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST)))]
+    pub(super) threads: Option<u16>,
+    /// Print the report as JSON (fields: docs/scene.md) instead of a table.
+    #[arg(long)]
+    pub(super) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
 /// How a scene is made.
 #[derive(Debug, Args)]
 pub(super) struct MakeArgs {
@@ -82,16 +111,35 @@ pub(super) struct MakeArgs {
     /// Views of the scene, evenly around it; each is a folder of images, a cloud and a camera.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=360))]
     pub(super) views: u16,
-    /// How the depth camera errs.
-    #[arg(long, value_enum, default_value_t = Noise::Realsense)]
-    pub(super) noise: Noise,
+    #[command(flatten)]
+    pub(super) noise: NoiseArgs,
     /// Plan grasps of this gripper on what the views show, and write the best of each body as sites: a built-in one or a
     /// TOML file.
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) gripper: Option<String>,
+}
+
+/// How the depth camera errs.
+#[derive(Debug, Args)]
+pub(super) struct NoiseArgs {
+    /// How the depth camera errs.
+    #[arg(long, value_enum, default_value_t = Noise::Realsense)]
+    pub(super) noise: Noise,
     /// Standard deviation of --noise gaussian, in metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.001)]
     pub(super) deviation: f64,
+}
+
+impl NoiseArgs {
+    pub(super) fn model(&self) -> DepthNoise {
+        match self.noise {
+            Noise::None => DepthNoise::none(),
+            Noise::Gaussian => DepthNoise::gaussian(self.deviation),
+            Noise::KinectV1 => DepthNoise::kinect_v1(),
+            Noise::AzureKinect => DepthNoise::azure_kinect(),
+            Noise::Realsense => DepthNoise::realsense(),
+        }
+    }
 }
 
 /// How bodies lie.
@@ -176,16 +224,4 @@ pub(super) enum Noise {
     AzureKinect,
     /// RealSense D415: stereo.
     Realsense,
-}
-
-impl Noise {
-    pub(super) fn model(self, deviation: f64) -> DepthNoise {
-        match self {
-            Self::None => DepthNoise::none(),
-            Self::Gaussian => DepthNoise::gaussian(deviation),
-            Self::KinectV1 => DepthNoise::kinect_v1(),
-            Self::AzureKinect => DepthNoise::azure_kinect(),
-            Self::Realsense => DepthNoise::realsense(),
-        }
-    }
 }

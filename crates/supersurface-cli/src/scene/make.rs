@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use supersurface::camera::Camera;
 use supersurface::grasp::Gripper;
-use supersurface::scene::{Recipe, Scene, arrange, draw, look, turntable, visibility};
+use supersurface::scene::{Layout, Recipe, Scene, arrange, draw, look, turntable, visibility};
 use supersurface_io::{
     SceneCamera, SceneExtras, read_gripper, read_things, write_scene, write_view,
 };
 use supersurface_physics::{SettleOptions, Settled, settle_scene};
 
-use super::args::{MakeArgs, formats};
+use super::args::{MakeArgs, NoiseArgs, formats};
 use super::sites::Grasps;
 use super::touches::touches;
 use crate::exit::Failure;
@@ -30,6 +30,17 @@ pub(super) struct Made {
     pub(super) warnings: Vec<String>,
 }
 
+/// What things are drawn from, once the other arguments are right.
+pub(super) fn recipes(things: &str, noise: &NoiseArgs) -> Result<Vec<Recipe>, Failure> {
+    if !(noise.deviation >= 0.0 && noise.deviation.is_finite()) {
+        let given = noise.deviation;
+        return Err(Failure::usage(format!(
+            "--deviation {given}: must be finite and not negative"
+        )));
+    }
+    read_things(things).map_err(Failure::input)
+}
+
 /// What files say that the arguments name.
 pub(super) struct Given {
     things: Vec<Recipe>,
@@ -38,17 +49,11 @@ pub(super) struct Given {
 
 /// Reads the files that the arguments name, once the others are right.
 pub(super) fn given(args: &MakeArgs) -> Result<Given, Failure> {
-    if !(args.deviation >= 0.0 && args.deviation.is_finite()) {
-        let given = args.deviation;
-        return Err(Failure::usage(format!(
-            "--deviation {given}: must be finite and not negative"
-        )));
-    }
+    let things = recipes(&args.things, &args.noise)?;
     if args.gripper.is_some() && args.views == 0 {
         let problem = "--gripper plans on what a view shows, and there is none: --views 1 or more";
         return Err(Failure::usage(problem.to_owned()));
     }
-    let things = read_things(&args.things).map_err(Failure::input)?;
     let gripper = args.gripper.as_deref().map(read_gripper).transpose().map_err(Failure::input)?;
     Ok(Given { things, gripper })
 }
@@ -56,6 +61,25 @@ pub(super) fn given(args: &MakeArgs) -> Result<Given, Failure> {
 /// Makes a folder where it is missing.
 pub(super) fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|e| Failure::output(format!("{}: {e}", path.display())))
+}
+
+/// Things drawn by lot where they came to rest.
+pub(super) fn settled(
+    things: &[Recipe],
+    count: u16,
+    layout: Layout,
+    seed: u64,
+) -> Result<(Scene, Settled), Failure> {
+    let bodies = draw(things, count.into(), seed).map_err(Failure::input)?;
+    let mut scene = arrange(bodies, layout, seed).map_err(Failure::input)?;
+    let settled = settle_scene(&mut scene, &SettleOptions::default()).map_err(Failure::input)?;
+    Ok((scene, settled))
+}
+
+/// The camera that looks.
+pub(super) fn depth_camera() -> Result<Camera, Failure> {
+    let middle = SIZE.map(|n| 0.5 * (n as f64 - 1.0));
+    Camera::new(SIZE, [FOCAL; 2], middle).map_err(Failure::input)
 }
 
 /// Makes the scene of a seed in a folder; `say` is told what is being done.
@@ -66,11 +90,8 @@ pub(super) fn make(
     output: &Path,
     mut say: impl FnMut(&'static str, String),
 ) -> Result<Made, Failure> {
-    say("draw", format!("drawing {} bodies", args.count));
-    let bodies = draw(&given.things, args.count.into(), seed).map_err(Failure::input)?;
-    let mut scene = arrange(bodies, args.layout.layout(), seed).map_err(Failure::input)?;
-    say("settle", "letting them fall".to_owned());
-    let settled = settle_scene(&mut scene, &SettleOptions::default()).map_err(Failure::input)?;
+    say("settle", format!("letting {} bodies fall", args.count));
+    let (mut scene, settled) = settled(&given.things, args.count, args.layout.layout(), seed)?;
     let mut warnings = Vec::new();
     for (body, rest) in scene.bodies.iter().zip(&settled.bodies) {
         if rest.lost {
@@ -81,9 +102,8 @@ pub(super) fn make(
     }
     let mut kept = settled.bodies.iter();
     scene.bodies.retain(|_| kept.next().is_none_or(|rest| !rest.lost));
-    let middle = SIZE.map(|n| 0.5 * (n as f64 - 1.0));
-    let camera = Camera::new(SIZE, [FOCAL; 2], middle).map_err(Failure::input)?;
-    let noise = args.noise.model(args.deviation);
+    let camera = depth_camera()?;
+    let noise = args.noise.model();
     let (mut cameras, mut shares) = (Vec::new(), vec![0f64; scene.bodies.len()]);
     let mut grasps = given.gripper.as_ref().map(|gripper| Grasps::new(gripper, &scene));
     for (k, pose) in turntable(&scene, &camera, args.views.into()).into_iter().enumerate() {

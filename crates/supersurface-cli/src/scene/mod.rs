@@ -1,9 +1,11 @@
-//! `supersurface scene`: makes scenes for simulators and for training.
+//! `supersurface scene`: makes scenes for simulators and for training, and recovers what is in them.
 
 mod args;
 mod dataset;
 mod make;
 mod random;
+mod recover;
+mod recovered;
 mod sites;
 mod text;
 mod touches;
@@ -17,5 +19,6 @@ pub(crate) fn run(args: &SceneArgs) -> Result<(), Failure> {
     match &args.command {
         SceneCommand::Random(args) => random::run(args),
         SceneCommand::Dataset(args) => dataset::run(args),
+        SceneCommand::Recover(args) => recover::run(args),
     }
 }

@@ -141,3 +141,47 @@ fn a_data_set_that_was_cut_off_is_completed_to_the_same_bytes() {
     let told = make(&cut, &["--noise", "none"]).ended(2).stderr;
     assert!(told.contains("other arguments"), "{told}");
 }
+
+#[test]
+fn what_is_recovered_is_the_same_on_any_number_of_threads() {
+    let things = scratch("recover_things.toml");
+    let kind = "[[kind]]\nname = \"egg\"\ndensity = 500\nfriction = 0.5\nshape.superellipsoid = { \
+                semi_axes = [0.04, 0.03, 0.03], exponents = [0.9, 1] }\n";
+    fs::write(&things, kind).unwrap();
+    let mut first = None;
+    for threads in ["1", "3"] {
+        let folder = scratch(&format!("recover_{threads}"));
+        let _ = fs::remove_dir_all(&folder);
+        let words = ["scene", "recover", "--scenes", "2", "--seed", "7", "--things", text(&things)];
+        let more = ["--noise", "none", "--threads", threads, "--json", "-o", text(&folder)];
+        let told = run(&[&words[..], &more[..]].concat()).ended(0);
+        let report = told.json();
+        assert_eq!(report["kinds"][0]["kind"], "egg");
+        assert_eq!(report["kinds"][0]["within_2_percent"], 2, "{report}");
+        let case = &report["scenes"][1];
+        assert!(case["error"].as_f64().is_some_and(|e| e < 0.02) && case["seed"] == 8, "{case}");
+        let made = files(&folder);
+        let names: Vec<&str> = made.iter().filter_map(|(name, _)| name.to_str()).collect();
+        let (truth, result) = ("scene_000008.gt.json", "scene_000008.json");
+        assert_eq!(names.len(), 5, "{names:?}");
+        assert!(["index.json", truth, result].iter().all(|name| names.contains(name)), "{names:?}");
+        let (stdout, files) = first.get_or_insert_with(|| (told.stdout.clone(), made.clone()));
+        assert!(*stdout == told.stdout && *files == made);
+    }
+    let told =
+        run(&["scene", "recover", "--scenes", "1", "--seed", "7", "--things", text(&things)]);
+    let told = told.ended(0).stdout;
+    assert!(told.lines().any(|line| line.starts_with("egg ")), "{told}");
+    // nobody can say which of a mug's parts one surface should be
+    fs::write(
+        &things,
+        kind.replace(
+            "superellipsoid = { semi_axes = [0.04, 0.03, 0.03], exponents = [0.9, 1]",
+            "hammer = { length = 0.2",
+        ),
+    )
+    .unwrap();
+    let told =
+        run(&["scene", "recover", "--scenes", "1", "--things", text(&things)]).ended(3).stderr;
+    assert!(told.contains("several parts"), "{told}");
+}

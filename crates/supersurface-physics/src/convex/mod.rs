@@ -24,7 +24,7 @@ use parry3d_f64::shape::{
 use supersurface::contact::Convex;
 use supersurface::deform::{Deformed, Taper};
 use supersurface::measure::{ClosestFinder, first_hit};
-use supersurface::nalgebra::{Translation3, UnitQuaternion};
+use supersurface::nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use supersurface::shape::{
     Implicit, Mass, MassProperties as _, Ray as LibraryRay, Superellipsoid, SupportMap as _,
 };
@@ -116,7 +116,9 @@ pub(crate) fn to_parry_mass(mass: &Mass, density: f64) -> MassProperties {
     if axes.eigenvectors.determinant() < 0.0 {
         axes.eigenvectors.neg_mut();
     }
-    let turn = UnitQuaternion::from_matrix(&axes.eigenvectors);
+    // orthonormal as they are: a search for the nearest rotation may go on for ever
+    let turn = Rotation3::from_matrix_unchecked(axes.eigenvectors);
+    let turn = UnitQuaternion::from_rotation_matrix(&turn);
     let frame = from_pose(&Pose::from_parts(Translation3::identity(), turn)).rotation;
     let inertia = from_vector(&axes.eigenvalues.map(|v| v.max(0.0) * density));
     MassProperties::with_principal_inertia_frame(

@@ -25,8 +25,12 @@ const RAYS: usize = 48;
 const HOLLOW: f64 = 0.02;
 /// Share of points left out by a convex body from which it may be hollow.
 const LEFT_OUT: f64 = 0.15;
-/// Share of the lines of sight through a convex body from which it may be hollow.
+/// Share of the lines of sight deep through a convex body from which it may be hollow, and of those through it at all, as a thin
+/// one is nowhere deep.
 const CROSSED: f64 = 0.03;
+const ENTERED: f64 = 0.1;
+/// Depth in a body, in normalised lengths, to which lines of sight come at its rim.
+const GRAZING: f64 = 0.04;
 /// A toroid that explains its points badly must be nearer to them than the ellipsoid by this logarithm.
 const CLEARLY: f64 = 0.25;
 /// Fewer points than this say nothing of bodies that explain them badly.
@@ -268,18 +272,18 @@ fn may_be_hollow(cloud: &Normalised, h: &Hypothesis) -> bool {
     if h.mixture.outliers > LEFT_OUT {
         return true;
     }
-    let deep = -(3.0 * h.mixture.scale).max(0.04);
-    let deep_among = |points: &[Vector]| {
+    let deep = (3.0 * h.mixture.scale).max(GRAZING);
+    let deeper_than = |depth: f64, points: &[Vector]| {
         let distances = distances(&h.parameters, points.iter().copied());
-        distances.into_iter().filter(|d| *d < deep).count()
+        distances.into_iter().filter(|d| *d < -depth).count() as f64
     };
-    let within = deep_among(&cloud.points);
     let mut intrusions = Vec::new();
     let mut rays = Rays::default();
     cloud.terms.intrusions(&h.parameters, RAYS, true, &mut rays, &mut intrusions);
-    let through = deep_among(&intrusions);
-    let looked = cloud.terms.lines_of_sight(RAYS, true);
-    within as f64 > HOLLOW * cloud.points.len() as f64 || through as f64 > CROSSED * looked as f64
+    let looked = cloud.terms.lines_of_sight(RAYS, true) as f64;
+    deeper_than(deep, &cloud.points) > HOLLOW * cloud.points.len() as f64
+        || deeper_than(deep, &intrusions) > CROSSED * looked
+        || deeper_than(GRAZING, &intrusions) > ENTERED * looked
 }
 
 /// True when the cloud shows the hole of a toroid: enough points lie on the inner half of the tube, none

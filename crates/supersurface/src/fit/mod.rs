@@ -24,6 +24,7 @@
 //! It does not promise the global optimum, and the hidden side of a single view is the simplest body that
 //! the evidence allows, not a measurement.
 
+mod agreement;
 mod bias;
 mod centred;
 mod choose;
@@ -57,6 +58,7 @@ mod terms;
 
 use nalgebra::Isometry3;
 
+pub use agreement::Agreement;
 pub use covariance::Covariance;
 pub(crate) use free_space::free_points_of;
 pub use free_space::{free_points, outline_points};

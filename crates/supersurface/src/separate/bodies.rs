@@ -1,5 +1,7 @@
 //! One surface for some points of a cloud, and how well it explains others.
 
+use std::f64::consts::TAU;
+
 use crate::cloud::PointCloud;
 use crate::fit::{
     Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, free_points_of,
@@ -24,6 +26,13 @@ const SOLID: usize = 4000;
 const FAR: f64 = 0.01;
 /// Cosine between an upright ring's axis and the support's normal, at least.
 const UPRIGHT: f64 = 0.7;
+
+/// Sectors about the axis of a ring, and in how many of them it must be seen, all but where it stands: by how small a part of
+/// the points that are due, within so many standard deviations of the support's points.
+const SECTORS: usize = 16;
+const AROUND: usize = 14;
+const SPARSE: usize = 10;
+const NEAR: f64 = 3.0;
 
 /// How pieces are fitted.
 pub(super) const ROUGHLY: FitOptions = FitOptions::only(Family::Superellipsoid).rough();
@@ -106,11 +115,25 @@ impl Around<'_> {
         some().filter(faces).count() as f64 / some().count().max(1) as f64
     }
 
-    /// True for a ring that lies on its side: the corner between two things looks like the inside of such a pipe.
-    pub(super) fn is_lying_ring(&self, fit: &Fit) -> bool {
+    /// True for a ring on its side that some points do not show all around its axis: the corner between two things looks
+    /// like the inside of such a pipe.
+    pub(super) fn is_corner(&self, points: &[u32], fit: &Fit) -> bool {
         let axis = fit.surface.pose() * Vector::z();
         matches!(fit.surface.shape(), Surface::Supertoroid(_))
             && self.support.is_some_and(|s| axis.dot(&s.normal()).abs() < UPRIGHT)
+            && !self.shows_all_around(points, fit)
+    }
+
+    /// Whether points lie on a surface in nearly all directions from its z axis.
+    fn shows_all_around(&self, points: &[u32], fit: &Fit) -> bool {
+        let mut found = [0; SECTORS];
+        for i in points.iter().filter(|i| self.distance(**i, fit) < NEAR * self.noise) {
+            let p = fit.surface.to_local(&self.cloud.points[*i as usize]);
+            let turn = 0.5 + p.y.atan2(p.x) / TAU;
+            found[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] += 1;
+        }
+        let due = points.len() / SECTORS;
+        found.iter().filter(|n| **n * SPARSE >= due).count() >= AROUND
     }
 
     /// First-order distance `|g - 1|/|∇g|` of a point from a surface, in metres.

@@ -1,6 +1,6 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
-use super::bodies::{Around, ROUGHLY};
+use super::bodies::{AS_RING, Around, ROUGHLY};
 use super::split::{is_better, split};
 use super::{Piece, Reason};
 use crate::fit::{Fit, FitOptions};
@@ -60,7 +60,7 @@ pub(super) fn clumped(
     parts.sort_by_key(|part| part.points[0]);
     if parts.len() < MANY && is_alike(scene, points, &parts) {
         let all = whole(Some(Reason::Whole));
-        if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, fit, &parts)) {
+        if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, points, fit, &parts)) {
             return all;
         }
     }
@@ -85,13 +85,14 @@ fn is_alike(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
     let off = |fit: &Fit| {
         parts.iter().map(|p| scene.rough(&p.points, fit) * p.points.len() as f64).sum::<f64>()
     };
-    scene.fit(points, &ROUGHLY).is_ok_and(|fit| off(&fit) < UNLIKE * own)
+    let alike = |options| scene.fit(points, options).is_ok_and(|fit| off(&fit) < UNLIKE * own);
+    alike(&ROUGHLY) || alike(&AS_RING)
 }
 
 /// Whether one body explains all parts of a clump.
-fn explains(scene: &Around<'_>, whole: &Fit, parts: &[Piece]) -> bool {
+fn explains(scene: &Around<'_>, points: &[u32], whole: &Fit, parts: &[Piece]) -> bool {
     let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
-    if scene.is_lying_ring(whole) {
+    if scene.is_corner(points, whole) {
         return false;
     }
     let unexplained = |worse: f64, slight: f64| {

@@ -41,7 +41,7 @@ const BEND: f64 = 10.0;
 
 /// The points of two things in a piece, where it is two.
 pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[Vec<u32>; 2]> {
-    if scene.is_lying_ring(whole) {
+    if scene.is_corner(points, whole) {
         let convex = scene.fit(points, &ROUGHLY).ok()?;
         return split(scene, points, &convex);
     }
@@ -50,8 +50,9 @@ pub(super) fn split(scene: &Around<'_>, points: &[u32], whole: &Fit) -> Option<[
     if small || rough < ROUGH * scene.noise || scene.facing(points, whole) < PARTLY {
         return None;
     }
-    let is_ring =
-        |fit: &Fit| !scene.is_lying_ring(fit) && scene.rough(points, fit) < SMOOTH * scene.noise;
+    let is_ring = |fit: &Fit| {
+        !scene.is_corner(points, fit) && scene.rough(points, fit) < SMOOTH * scene.noise
+    };
     if scene.fit(points, &AS_RING).is_ok_and(|ring| is_ring(&ring)) {
         return None;
     }
