@@ -17,6 +17,9 @@ use supersurface::shape::{Posed, Superellipsoid, Supertoroid};
 use supersurface::surface::Solid;
 use supersurface::{Pose, Vector};
 
+/// What is done to a superellipsoid.
+type Deform = fn(Solid) -> Solid;
+
 const PAIRS: usize = 1_000;
 const SLICED: usize = 10;
 const BODIES: usize = 1_000;
@@ -65,7 +68,7 @@ fn main() {
         Sliced::new(&Posed::new(shape, pose(random, place)).unwrap()).unwrap()
     };
     let core = |random: &mut Stream| Solid::from(*body(random, Vector::zeros()).shape().shape());
-    let kinds: [(&str, fn(Solid) -> Solid); 3] = [
+    let kinds: [(&str, Deform); 3] = [
         ("whole", |s| s),
         ("ring", |_| Solid::from(Supertoroid::new([0.3; 3], 2.5, [1.0; 2]).unwrap())),
         ("tapered and bent", |s| s.tapered([-0.3, -0.3]).unwrap().bent(0.4, 0.0).unwrap()),

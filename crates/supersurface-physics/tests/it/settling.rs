@@ -1,9 +1,9 @@
 //! Settling of what is not convex, on shelves, and of what is wrong.
 
 use supersurface::combine::Part;
-use supersurface::contact::{Convex, half_space, ring};
+use supersurface::contact::{Sliced, half_space, solids};
 use supersurface::shape::{Plane, Posed, Superellipsoid, Supertoroid};
-use supersurface::surface::Surface;
+use supersurface::surface::{Solid, Surface};
 use supersurface::{Point, Pose, Vector};
 use supersurface_physics::{
     Falling, Ground, NoShape, SettleError, SettleOptions, integration_parameters, settle,
@@ -44,10 +44,11 @@ fn a_ring_falls_over_a_peg() {
     assert!(settled.all_at_rest());
     let [peg_at, ring_at] = [settled.bodies[0].pose, settled.bodies[1].pose];
     assert!((ring_at.translation.z - 0.01).abs() < 3e-4, "{ring_at}");
-    let posed = Posed::new(toroid, ring_at).unwrap();
-    let peg = Posed::new(Convex::new(peg).unwrap(), peg_at).unwrap();
+    let ring = Posed::new(Solid::from(toroid), ring_at).unwrap();
+    let peg = Posed::new(Solid::from(peg), peg_at).unwrap();
+    let [ring, peg] = [ring, peg].map(|solid| Sliced::new(&solid).unwrap());
     // apart, or so near that the exact query calls it an overlap of nothing
-    assert!(ring(&posed, &peg).unwrap().distance > -1e-4);
+    assert!(solids(&ring, &peg).unwrap().distance > -1e-4);
     assert!(settled.overlap < 1e-4);
 }
 
