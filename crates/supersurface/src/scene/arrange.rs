@@ -29,6 +29,8 @@ const GAP: f64 = 0.04;
 const BOARD: f64 = 0.2;
 /// Boards of a shelf.
 const BOARDS: usize = 3;
+/// What stands is put down with a tilt of so many radians: what would balance on a tip falls.
+const TILT: f64 = 0.02;
 /// The ground relative to what stands on it.
 const GROUND: f64 = 2.0;
 
@@ -157,7 +159,10 @@ fn circle(body: &Body) -> ([f64; 2], f64) {
 
 /// Turned about the vertical, and with its lowest point at a height.
 fn stood(body: &mut Body, ball: &Ball, [x, y]: [f64; 2], height: f64, stream: &mut Stream) {
-    body.pose = ball.put(Vector::new(x, y, 0.0), any_yaw(stream));
+    let yaw = any_yaw(stream);
+    let (sin, cos) = stream.between(0.0, TAU).sin_cos();
+    let tilt = UnitQuaternion::from_scaled_axis(Vector::new(cos, sin, 0.0) * TILT);
+    body.pose = ball.put(Vector::new(x, y, 0.0), tilt * yaw);
     body.pose.translation.z += height - body.bounds()[0].z;
 }
 
