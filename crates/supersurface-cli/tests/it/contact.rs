@@ -146,7 +146,7 @@ fn deformed_bodies_and_two_rings_answer() {
     let [flat, upright] =
         [ring(0.0, "[1, 0, 0, 0]"), ring(4.0, "[0.7071067811865476, 0.7071067811865476, 0, 0]")];
     let ran = run(&["contact", &flat, &upright]).ended(0);
-    assert!(ran.stdout.starts_with("apart by 2 m"), "{}", ran.stdout);
+    assert!(ran.stdout.starts_with("apart by 2.0"), "{}", ran.stdout);
 }
 
 #[test]

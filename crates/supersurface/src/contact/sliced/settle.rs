@@ -14,7 +14,7 @@ use crate::Vector;
 use crate::contact::WarmStart;
 use crate::shape::InvalidShape;
 
-/// Questions to slices after which no more settles.
+/// Questions to slices after which no search goes on.
 const MOST_ASKED: usize = 40_000;
 /// Steps before the search is content with what parts.
 const STEPS: usize = 200;
@@ -88,8 +88,8 @@ impl<'a> Settling<'a> {
         }
     }
 
-    /// Where a translation settles, if that parts and is none of those that are `known`. `None` as well once slices were
-    /// asked too often.
+    /// Where a translation settles, if some near it parts and where that leads is none of those that are `known`; how far it got
+    /// once slices were asked too often.
     pub(super) fn settle(
         &mut self,
         from: Vector,
