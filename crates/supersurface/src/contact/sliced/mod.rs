@@ -38,7 +38,7 @@ use crate::shape::InvalidShape;
 /// to be at least 0.95
 /// of what was found where 300 cells of directions and 100,000 questions to slices suffice; else the bound is what they show. That it
 /// is little more than was found is shown for a translation a thousandth longer, or else for one out of the
-/// convex hull. Where both bodies are cut, a depth takes seconds, and is a little more than the least that is near (up to 1e-4 of the size) where
+/// convex hull. Where both bodies are cut, a depth takes seconds, and is a little more than the least that is near (up to 1e-3 of the size was seen) where
 /// the search ends early; with exponents of 2 or near 0 tens of seconds, else mostly a tenth of one. What is not guaranteed: that no shorter
 /// translation exists between the bounds; one through a narrow gap can be missed.
 ///
