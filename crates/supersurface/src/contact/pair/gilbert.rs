@@ -1,4 +1,4 @@
-//! The last resort for bodies that are apart: the algorithm of Gilbert, Johnson and Keerthi (1988).
+//! The last resort for bodies that are apart, or that few directions leave undecided: the algorithm of Gilbert, Johnson and Keerthi (1988).
 //!
 //! The direction of the origin from the Minkowski difference is that of its nearest point on a simplex of support
 //! points, which a new support point improves until none is nearer. It needs no derivatives, so that nothing can
@@ -11,7 +11,7 @@ const STEPS: usize = 500;
 /// Width of the bounds, in the pair's size, at which Newton's method takes over.
 const NEAR: f64 = 1e-11;
 
-/// The minimum of `φ`, given a direction where it is negative.
+/// The minimum of `φ` of bodies that are apart; else one below the best direction that was met.
 pub(super) fn gilbert(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     let mut simplex: Vec<Triple> = Vec::with_capacity(4);
     let mut normal = *start;
@@ -22,6 +22,11 @@ pub(super) fn gilbert(pair: &Difference, start: &[Triple; 2]) -> Minimum {
             best = (at.value, normal);
         }
         simplex.push(at.gap);
+        if let [a, b, c, d] = simplex[..]
+            && holds_origin(&[a, b, c, d])
+        {
+            break;
+        }
         let (nearest, kept) = nearest(&simplex);
         let distance = dot(&nearest, &nearest).sqrt();
         if distance + best.0 < NEAR || simplex[..simplex.len() - 1].contains(&at.gap) {
@@ -32,6 +37,15 @@ pub(super) fn gilbert(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         normal = [n, pair.to_b(&n)];
     }
     descend(pair, &best.1)
+}
+
+/// True where the origin is inside a tetrahedron: the bodies overlap.
+fn holds_origin(corners: &[Triple; 4]) -> bool {
+    let [a, b, c, d] = corners;
+    let volume = |p: &Triple, q: &Triple, r: &Triple| dot(p, &cross(q, r));
+    // those that the origin makes with the faces, each seen from the opposite corner
+    let parts = [volume(b, d, c), volume(a, c, d), volume(a, d, b), volume(a, b, c)];
+    parts.iter().all(|v| *v > 0.0) || parts.iter().all(|v| *v < 0.0)
 }
 
 /// The point of a simplex of up to four that is nearest to the origin, and the vertices that it lies between.

@@ -14,6 +14,7 @@ use super::cells::{first_guess, least};
 use super::continuation::settle;
 use super::descent::Minimum;
 use super::difference::{Difference, FARTHEST, Triple, dot};
+use super::gilbert::gilbert;
 use super::proven::Proven;
 use super::witness::Witnesses;
 use crate::shape::Posed;
@@ -155,6 +156,13 @@ pub(super) fn answer(
         answer.minimum = least.minimum;
         answer.least_depth = least.bound;
         answer.unique = least.unique;
+        if least.bound < 0.0 && least.minimum.expansion.value > 0.0 {
+            // not shown to overlap
+            let other = gilbert(&answer.pair, &answer.minimum.normal);
+            if other.expansion.value < answer.minimum.expansion.value {
+                answer.minimum = other;
+            }
+        }
     }
     start.normal = Some(answer.minimum.normal[0]);
     answer

@@ -7,7 +7,7 @@ use super::body::Sliced;
 use super::grid::Grid;
 use super::lowest::lowest;
 use super::slice::{FEW, Touch};
-use crate::contact::{Contact, WarmStart};
+use crate::contact::WarmStart;
 use crate::shape::InvalidShape;
 
 /// Slices of each body at first.
@@ -19,13 +19,16 @@ const MOST: usize = 4_000;
 /// Low nodes of the grid that are followed at first.
 const FOLLOWED: usize = 8;
 
-/// The contact of the nearest slices; where the bodies overlap, that of two slices that do.
+/// The nearest slices, and bounds of the bodies' distance in their contact; where two slices are found to be nearer than `stop`,
+/// these. Bounds are `content` apart, if the pairs of slices last. Both relative to the smaller body's size.
 pub(super) fn nearest(
     bodies: [&Sliced; 2],
     content: f64,
+    stop: f64,
     start: &mut WarmStart,
-) -> Result<Contact, InvalidShape> {
-    let content = content * bodies[0].size().min(bodies[1].size());
+) -> Result<Touch, InvalidShape> {
+    let size = bodies[0].size().min(bodies[1].size());
+    let [content, stop] = [content * size, stop * size];
     let bound = |touch: &Touch, half: [f64; 2]| {
         let n = touch.contact.normal.into_inner();
         let [a, b] =
@@ -37,8 +40,8 @@ pub(super) fn nearest(
     for k in 0..grid.len() {
         let [a, b] = grid.node(k);
         let found = a.touch(b, start, FEW);
-        if found.contact.distance <= 0.0 {
-            return Ok(found.contact);
+        if found.contact.distance <= stop {
+            return Ok(found);
         }
         nodes.push(found);
     }
@@ -58,8 +61,8 @@ pub(super) fn nearest(
     let (mut least, mut asked) = (f64::INFINITY, 0);
     let mut better: Option<[f64; 2]> = None;
     while let Some((middle, half)) = open.pop() {
-        if middle.contact.distance <= 0.0 {
-            return Ok(middle.contact);
+        if middle.contact.distance <= stop {
+            return Ok(middle);
         }
         if middle.contact.distance < best.contact.distance {
             (best, better) = (middle, Some(half));
@@ -83,9 +86,8 @@ pub(super) fn nearest(
     if let Some(half) = better {
         best = lowest(bodies, &best, half.map(|h| 2.0 * h), start)?;
     }
-    let mut contact = best.contact;
-    if contact.distance > 0.0 {
-        contact.bounds[0] = least.min(contact.bounds[0]).max(0.0);
+    if best.contact.distance > 0.0 {
+        best.contact.bounds[0] = least.min(best.contact.bounds[0]).max(0.0);
     }
-    Ok(contact)
+    Ok(best)
 }

@@ -8,8 +8,8 @@ use super::slice::{FEW, MANY, Slice};
 use crate::Vector;
 use crate::contact::WarmStart;
 
-/// Questions to slices after which nothing more is shown.
-const MOST_ASKED: usize = 100_000;
+/// Questions to slices after which no more directions are tried, and nothing more is shown of cells.
+const MOST_ASKED: [usize; 2] = [50_000; 2];
 /// Pairs that are added.
 const MOST_ADDED: usize = 64;
 /// A pair carries on where it blocks this much farther at least, relative to the length that is asked for.
@@ -24,14 +24,14 @@ pub(super) struct Blocked {
     /// Those that blocked last are asked first.
     pairs: Vec<([Slice; 2], WarmStart)>,
     added: usize,
-    /// How often slices were asked.
-    asked: usize,
+    /// How often slices were asked for directions that were tried, and for cells.
+    asked: [usize; 2],
 }
 
 impl Blocked {
     pub(super) fn new(grid: &Grid) -> Self {
         let pair = |k: usize| (grid.node(k).map(|slice| *slice), WarmStart::default());
-        Self { pairs: (0..grid.len()).map(pair).collect(), added: 0, asked: 0 }
+        Self { pairs: (0..grid.len()).map(pair).collect(), added: 0, asked: [0; 2] }
     }
 
     /// One more pair to ask.
@@ -40,9 +40,9 @@ impl Blocked {
         self.pairs.insert(0, (pair, WarmStart::default()));
     }
 
-    /// True where slices were asked too often.
-    pub(super) const fn exhausted(&self) -> bool {
-        self.asked >= MOST_ASKED
+    /// True where slices were asked too often for cells, or else for directions.
+    pub(super) const fn exhausted(&self, cells: bool) -> bool {
+        self.asked[cells as usize] >= MOST_ASKED[cells as usize]
     }
 
     /// True where no more pairs are taken.
@@ -54,7 +54,7 @@ impl Blocked {
     /// within `spread` of one, given that they do so up to `reach`.
     pub(super) fn until(&mut self, way: &Vector, spread: f64, reach: f64, limit: f64) -> f64 {
         let mut reach = reach;
-        'further: while reach < limit && self.asked < MOST_ASKED {
+        'further: while reach < limit && !self.exhausted(spread > 0.0) {
             for place in 0..self.pairs.len() {
                 let end = self.pair_until(place, way, spread, [reach, limit]);
                 if end > reach + FARTHER * limit {
@@ -75,7 +75,7 @@ impl Blocked {
         if a.clear_of(&b) {
             return f64::INFINITY;
         }
-        self.asked += 1;
+        self.asked[usize::from(spread > 0.0)] += 1;
         let cells = if spread > 0.0 { MANY } else { FEW };
         let contact = a.touch(&b, start, cells).contact;
         // a single direction is only tried, a cell is proven

@@ -10,7 +10,7 @@ use super::blocked::Blocked;
 use super::body::Sliced;
 use super::directions::Cell;
 use super::grid::Grid;
-use super::settle::{Parting, Settling};
+use super::settle::{Parting, Settling, TOUCHING};
 use crate::contact::{Contact, WarmStart};
 use crate::shape::InvalidShape;
 use crate::{Direction, Point, Vector};
@@ -27,6 +27,10 @@ const OUTWARD: usize = 3;
 const AROUND: f64 = 1.15;
 /// A direction has led out where no more than this share of its length still overlaps.
 const OUT: f64 = 1e-3;
+/// How often one is settled again where slices still overlap.
+const CHECKED: usize = 8;
+/// Slices that overlap are looked for until there are none by more than this, relative to the bodies' size.
+const CLEAR: f64 = 1e-6;
 /// How often the best is taken up again.
 const POLISHES: usize = 20;
 /// Shorter translations have no direction, relative to the bodies' size.
@@ -37,104 +41,133 @@ pub(super) fn depth(bodies: [&Sliced; 2]) -> Result<Contact, InvalidShape> {
     let both = bodies.iter().all(|body| body.as_convex().is_none());
     let grid = Grid::new(bodies, SLICES[usize::from(both)])?;
     let size = bodies[0].size().min(bodies[1].size());
-    let settling = Settling::new(bodies, &grid, size);
-    Search { bodies, size, settling, blocked: Blocked::new(&grid) }.solve()
+    let mut settling = Settling::new(bodies, &grid, size);
+    let ways = || Cell::all().into_iter().flat_map(|c| c.quarters()).map(|c| c.way());
+    let outward = |way: &Vector| (bodies[0].extent(way) + bodies[1].extent(&-way)).max(0.0);
+    let mut hull: Vec<(f64, Vector)> = ways().map(|way| (outward(&way), way)).collect();
+    hull.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let (sure, way) = hull[0];
+    let best = settling.at(way * sure)?;
+    let blocked = Blocked::new(&grid);
+    let mut search = Search { bodies, size, sure, settling, blocked, known: Vec::new(), best };
+    for (length, way) in &hull[..OUTWARD] {
+        search.settle(way * *length)?;
+    }
+    // minima next to each other are told apart by where they lead, not by the directions' own lengths
+    for way in ways() {
+        search.follow(&way, 0.0, AROUND * search.best.by.norm())?;
+    }
+    let least = search.least()?;
+    search.polish()?;
+    search.contact(least)
 }
 
 struct Search<'a> {
     bodies: [&'a Sliced; 2],
     /// The smaller body's size.
     size: f64,
+    /// The length of a translation out of the other's hull.
+    sure: f64,
     settling: Settling<'a>,
     blocked: Blocked,
+    /// Where searches led.
+    known: Vec<Parting>,
+    /// The shortest that parts.
+    best: Parting,
 }
 
 impl Search<'_> {
-    fn solve(&mut self) -> Result<Contact, InvalidShape> {
-        let ways = || Cell::all().into_iter().flat_map(|c| c.quarters()).map(|c| c.way());
-        let mut outward: Vec<(f64, Vector)> = ways().map(|way| (self.outward(&way), way)).collect();
-        outward.sort_by(|p, q| p.0.total_cmp(&q.0));
-        let (sure, way) = outward[0];
-        let mut known = Vec::new();
-        for (length, way) in &outward[..OUTWARD] {
-            known.extend(self.settling.settle(way * *length, &known)?);
-        }
-        let mut best = self.settling.at(way * sure)?;
-        let shorter = |best: &mut Parting, known: &[Parting]| {
-            for found in known {
-                if found.by.norm() < best.by.norm() {
-                    *best = *found;
-                }
-            }
-        };
-        shorter(&mut best, &known);
-        // minima next to each other are told apart by where they lead, not by the directions' own lengths
-        for way in ways() {
-            self.follow(&mut known, &way, 0.0, AROUND * best.by.norm())?;
-            shorter(&mut best, &known);
-        }
+    /// No translation is shorter than this: shown over cells of directions, while shorter ones are found. More than `CONTENT` of
+    /// the best is not shown.
+    fn least(&mut self) -> Result<f64, InvalidShape> {
         let mut queue = Cell::all();
         let mut open: Vec<(f64, Cell)> = Vec::new();
         let mut seen = 0;
         while let Some(cell) = queue.pop() {
             seen += 1;
-            let (way, goal) = (cell.way(), CONTENT * best.by.norm());
+            let (way, goal) = (cell.way(), CONTENT * self.best.by.norm());
             let reach = self.blocked.until(&way, cell.spread(), 0.0, goal);
             if reach < goal {
-                self.follow(&mut known, &way, reach, best.by.norm())?;
-                shorter(&mut best, &known);
+                self.follow(&way, reach, self.best.by.norm())?;
                 open.push((reach, cell));
             }
-            let goal = CONTENT * best.by.norm();
+            let goal = CONTENT * self.best.by.norm();
             open.retain(|(reach, _)| *reach < goal);
-            if queue.is_empty() && seen < MOST && !self.blocked.exhausted() {
+            if queue.is_empty() && seen < MOST && !self.blocked.exhausted(true) {
                 let least = (0..open.len()).min_by(|i, j| open[*i].0.total_cmp(&open[*j].0));
                 queue.extend(least.map(|k| open.swap_remove(k).1.quarters()).into_iter().flatten());
             }
         }
-        // slow ones were not at their end
+        let goal = CONTENT * self.best.by.norm();
+        Ok(open.iter().map(|(reach, _)| *reach).fold(goal, f64::min))
+    }
+
+    /// Takes up the best again: slow searches were not at their end.
+    fn polish(&mut self) -> Result<(), InvalidShape> {
+        self.settling.renew();
         for _ in 0..POLISHES {
-            let length = best.by.norm();
-            match self.settling.settle(best.by, &[])? {
-                Some(found) if found.by.norm() < length => best = found,
-                _ => break,
-            }
-            if length - best.by.norm() <= NONE * self.size {
+            let length = self.best.by.norm();
+            let Some(found) = self.settling.settle(self.best.by, &[])? else { break };
+            self.take(found)?;
+            if length - self.best.by.norm() <= NONE * self.size {
                 break;
             }
         }
-        let length = best.by.norm();
-        let least = open.iter().map(|(reach, _)| *reach).fold(CONTENT * length, f64::min);
-        let most = self.longest(&best, sure)?.max(length);
-        let shortest = NONE * self.size;
-        let normal = Direction::try_new(best.by, shortest).unwrap_or(best.touch.contact.normal);
-        let on_first = best.touch.contact.witnesses[0];
+        Ok(())
+    }
+
+    fn contact(&self, least: f64) -> Result<Contact, InvalidShape> {
+        let Parting { by, touch } = self.best;
+        let length = by.norm();
+        let most = self.longest()?.max(length);
+        let normal = Direction::try_new(by, NONE * self.size).unwrap_or(touch.contact.normal);
+        let on_first = touch.contact.witnesses[0];
         Ok(Contact {
             distance: -length,
-            bounds: [-most, -least],
+            bounds: [-most, -least.min(length)],
             normal,
-            witnesses: [on_first, Point::from(on_first.coords - best.by)],
+            witnesses: [on_first, Point::from(on_first.coords - by)],
         })
     }
 
-    /// How far the second body must move along a unit direction to leave the first's hull by the plane across it.
-    fn outward(&self, way: &Vector) -> f64 {
-        (self.bodies[0].extent(way) + self.bodies[1].extent(&-way)).max(0.0)
+    /// Where a translation settles is known from now on.
+    fn settle(&mut self, from: Vector) -> Result<(), InvalidShape> {
+        match self.settling.settle(from, &self.known)? {
+            Some(found) => self.take(found),
+            None => Ok(()),
+        }
     }
 
-    /// Follows a direction that is blocked up to `reach` out of the first body, if that takes less than `limit`, and adds to
-    /// what is known where that settles.
-    fn follow(
-        &mut self,
-        known: &mut Vec<Parting>,
-        way: &Vector,
-        reach: f64,
-        limit: f64,
-    ) -> Result<(), InvalidShape> {
-        if let Some(length) = self.exit(way, reach, limit)? {
-            known.extend(self.settling.settle(way * length, known)?);
+    /// Makes one that is shorter the best; if slices between those that were asked still overlap after it, then where it settles with them.
+    fn take(&mut self, found: Parting) -> Result<(), InvalidShape> {
+        let mut found = found;
+        for _ in 0..CHECKED {
+            self.known.push(found);
+            if found.by.norm() >= self.best.by.norm() {
+                break;
+            }
+            let moved = self.bodies[1].moved(&found.by);
+            let bodies = [self.bodies[0], &moved];
+            let touch = nearest(bodies, CLEAR, -2.0 * TOUCHING, &mut WarmStart::default())?;
+            if touch.contact.distance > -2.0 * TOUCHING * self.size {
+                self.best = found;
+                break;
+            }
+            self.settling.add(touch.at);
+            match self.settling.settle(found.by, &[])? {
+                Some(next) => found = next,
+                None => break,
+            }
         }
         Ok(())
+    }
+
+    /// Follows a direction that is blocked up to `reach` out of the first body, if that takes less than `limit`.
+    fn follow(&mut self, way: &Vector, reach: f64, limit: f64) -> Result<(), InvalidShape> {
+        match self.exit(way, reach, limit)? {
+            Some(length) => self.settle(way * length),
+            None => Ok(()),
+        }
     }
 
     /// The length, less than `limit`, at which a direction first leads out of the first body; slices are added where only
@@ -144,7 +177,7 @@ impl Search<'_> {
         loop {
             let before = reach;
             reach = self.blocked.until(way, 0.0, reach, limit);
-            if reach >= limit || self.blocked.exhausted() {
+            if reach >= limit || self.blocked.exhausted(false) {
                 return Ok(None);
             }
             let touch = self.settling.at(way * reach)?.touch;
@@ -161,14 +194,16 @@ impl Search<'_> {
         }
     }
 
-    /// A length of which it is shown that a translation as long parts: little more than the best's, or `sure`.
-    fn longest(&self, best: &Parting, sure: f64) -> Result<f64, InvalidShape> {
-        let (length, size) = (best.by.norm(), self.size);
-        let way = best.by.try_normalize(0.0).unwrap_or(best.touch.contact.normal.into_inner());
+    /// A length of which it is shown that a translation as long parts: little more than the best's, or out of the hull.
+    fn longest(&self) -> Result<f64, InvalidShape> {
+        let (Parting { by, touch }, size) = (self.best, self.size);
+        let length = by.norm();
+        let way = by.try_normalize(0.0).unwrap_or(touch.contact.normal.into_inner());
         let more = 1e-3 * length.max(1e-2 * size);
         let moved = self.bodies[1].moved(&(way * (length + more)));
         let content = 0.3 * more / size;
-        let found = nearest([self.bodies[0], &moved], content, &mut WarmStart::default())?;
-        Ok(if found.bounds[0] > 0.0 { sure.min(length + more) } else { sure })
+        let bodies = [self.bodies[0], &moved];
+        let found = nearest(bodies, content, 0.0, &mut WarmStart::default())?.contact;
+        Ok(if found.bounds[0] > 0.0 { self.sure.min(length + more) } else { self.sure })
     }
 }

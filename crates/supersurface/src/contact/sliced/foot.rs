@@ -1,12 +1,13 @@
 //! The point nearest to the origin of those before several planes.
 
 use crate::Vector;
-use nalgebra::{Matrix2, Vector2};
 
 /// Exchanges of planes before the search gives up.
 const MOST: usize = 100;
-/// By how much a plane may be missed, relative to the point's and the plane's distance.
-const EXACT: f64 = 1e-14;
+/// By how much a plane may be missed, relative to the point's and the plane's distance: less by those that are exchanged,
+/// or nearly equal ones take turns.
+const EXACT: f64 = 1e-13;
+const EXCHANGED: f64 = 1e-14;
 
 /// The half space of the points `p` with `normal·p >= offset`, in metres; the normal is a unit vector.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +46,8 @@ fn nearest(planes: &[Plane]) -> Option<(Vector, Vec<Plane>)> {
         let on: Vec<Plane> =
             (0..planes.len()).filter(|k| chosen >> k & 1 == 1).map(|k| planes[k]).collect();
         let Some(at) = meeting(&on) else { continue };
-        let inside = planes.iter().all(|p| p.missed(&at) <= 1e-12 * (at.norm() + p.offset.abs()));
+        let inside =
+            planes.iter().all(|p| p.missed(&at) <= EXCHANGED * (at.norm() + p.offset.abs()));
         if inside && best.as_ref().is_none_or(|(other, _)| at.norm() < other.norm()) {
             best = Some((at, on));
         }
@@ -53,26 +55,23 @@ fn nearest(planes: &[Plane]) -> Option<(Vector, Vec<Plane>)> {
     best
 }
 
-/// The point of one to three planes that is nearest to the origin.
+/// The point of one to three planes that is nearest to the origin, along normals that are made orthogonal one after
+/// the other: it misses its planes by rounding alone, however small the angles between them are.
 fn meeting(planes: &[Plane]) -> Option<Vector> {
-    let at = match planes {
-        [p] => p.normal * p.offset,
-        [p, q] => {
-            let both = p.normal.dot(&q.normal);
-            let gram = Matrix2::new(1.0, both, both, 1.0);
-            let weights = gram.try_inverse()? * Vector2::new(p.offset, q.offset);
-            p.normal * weights.x + q.normal * weights.y
+    let mut at = Vector::zeros();
+    let mut axes = [Vector::zeros(); 3];
+    for (k, plane) in planes.iter().enumerate() {
+        let mut axis = plane.normal;
+        // the second time takes away what rounding left at small angles
+        for _ in 0..2 {
+            for other in &axes[..k] {
+                axis -= other * other.dot(&axis);
+            }
+            axis.try_normalize_mut(0.0)?;
         }
-        [p, q, r] => {
-            let across = q.normal.cross(&r.normal);
-            let volume = p.normal.dot(&across);
-            (across * p.offset
-                + r.normal.cross(&p.normal) * q.offset
-                + p.normal.cross(&q.normal) * r.offset)
-                / volume
-        }
-        _ => return None,
-    };
+        at += axis * (plane.missed(&at) / plane.normal.dot(&axis));
+        *axes.get_mut(k)? = axis;
+    }
     at.iter().all(|v| v.is_finite()).then_some(at)
 }
 

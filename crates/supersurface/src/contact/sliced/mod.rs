@@ -67,7 +67,7 @@ pub fn solids(a: &Sliced, b: &Sliced) -> Result<Contact, InvalidShape> {
     if let Some(found) = ball::ball(a, b).or_else(|| ball::ball(b, a).map(Contact::turned)) {
         return Ok(found);
     }
-    match apart::nearest([a, b], apart::CONTENT, &mut start)? {
+    match apart::nearest([a, b], apart::CONTENT, 0.0, &mut start)?.contact {
         found if found.distance > 0.0 => Ok(found),
         _ => depth::depth([a, b]),
     }

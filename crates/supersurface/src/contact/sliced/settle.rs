@@ -31,8 +31,10 @@ const BETWEEN: usize = 12;
 const PUSHES: usize = 40;
 /// A translation has settled where it moves by this at most, relative to the bodies' size: its length has by the square.
 const SETTLED: f64 = 1e-8;
+/// A search ends where a step that gains this at most, relative to the size, still meets slices that overlap.
+const GAIN: f64 = 1e-12;
 /// A settled one may leave an overlap of this, relative to the bodies' size.
-const TOUCHING: f64 = 1e-10;
+pub(super) const TOUCHING: f64 = 1e-10;
 /// A search that comes this near to a known translation, in its own steps, finds it again, once these are this short
 /// relative to the bodies' size.
 const KNOWN: f64 = 3.0;
@@ -60,6 +62,8 @@ pub(super) struct Settling<'a> {
     /// The longest way between the slices of a node and those half an interval away, twice.
     ways: Vec<f64>,
     nodes: Vec<Node>,
+    /// Places between the nodes at which slices overlapped, though no node led there.
+    missed: Vec<[f64; 2]>,
     starts: Vec<WarmStart>,
     /// The translation that was asked about last.
     by: Vector,
@@ -82,6 +86,7 @@ impl<'a> Settling<'a> {
             size,
             ways: ways.collect(),
             nodes,
+            missed: Vec::new(),
             starts,
             by: Vector::zeros(),
             asked: 0,
@@ -98,16 +103,28 @@ impl<'a> Settling<'a> {
         let Some(mut found) = self.parting(from)? else { return Ok(None) };
         // slices between the nodes, with their planes
         let mut between: Vec<([f64; 2], Plane)> = Vec::new();
+        // planes seen from where slices overlap may contradict each other; what was found lies before all that are seen from there
+        let mut careful = false;
         let mut last: Option<Vector> = None;
         let mut parted = 0;
         for _ in 0..STEPS {
             if self.asked > MOST_ASKED {
                 break;
             }
-            let planes: Vec<Plane> = (self.nodes.iter().map(|node| node.plane))
-                .chain(between.iter().map(|(_, plane)| *plane))
-                .collect();
-            let Some(next) = foot(&planes) else { break };
+            let seen = self.nodes.iter().map(|node| node.plane);
+            let mut planes: Vec<Plane> = seen.chain(between.iter().map(|(_, p)| *p)).collect();
+            if careful {
+                planes.iter_mut().for_each(|p| p.offset = p.offset.min(p.normal.dot(&found.by)));
+            }
+            let shorter = |next: &Vector| next.norm() < found.by.norm();
+            let Some(next) = foot(&planes).filter(shorter) else {
+                if careful {
+                    break;
+                }
+                careful = true;
+                self.see_from(&found.by, &mut between)?;
+                continue;
+            };
             let mut move_by = next - found.by;
             // steps that shrink by the same factor go on to where they lead
             let factor = last.map_or(0.0, |last| move_by.dot(&last) / last.norm_squared());
@@ -117,9 +134,9 @@ impl<'a> Settling<'a> {
             }
             let touches = self.touches_at(&(found.by + move_by))?;
             let over: Vec<Touch> = touches.iter().filter(|t| self.overlaps(t)).copied().collect();
-            let gain = found.by.norm() - (found.by + move_by).norm();
             if !over.is_empty() {
-                if gain <= SETTLED * self.size {
+                let gain = found.by.norm() - (found.by + move_by).norm();
+                if careful && gain <= GAIN * self.size {
                     break;
                 }
                 for touch in over {
@@ -131,11 +148,14 @@ impl<'a> Settling<'a> {
                     };
                     between.push((touch.at, plane));
                 }
+                if careful {
+                    self.see_from(&found.by, &mut between)?;
+                }
                 continue;
             }
             let moved = move_by.norm();
             found = self.parted(found.by + move_by, &touches);
-            (parted, last) = (parted + 1, Some(move_by));
+            (parted, last, careful) = (parted + 1, Some(move_by), false);
             let again = |known: &Parting| (found.by - known.by).norm() <= KNOWN * moved;
             if moved <= NEAR * self.size && known.iter().any(again) {
                 return Ok(None);
@@ -154,6 +174,19 @@ impl<'a> Settling<'a> {
         Ok(Some(found))
     }
 
+    /// All planes as they are seen from a translation.
+    fn see_from(
+        &mut self,
+        by: &Vector,
+        between: &mut [([f64; 2], Plane)],
+    ) -> Result<(), InvalidShape> {
+        self.touches_at(by)?;
+        for (at, plane) in between.iter_mut() {
+            *plane = self.plane_at(*at, by)?;
+        }
+        Ok(())
+    }
+
     /// A translation near one that parts, by pushes out of the slices that overlap most.
     fn parting(&mut self, from: Vector) -> Result<Option<Parting>, InvalidShape> {
         let mut by = from;
@@ -170,6 +203,16 @@ impl<'a> Settling<'a> {
 
     fn overlaps(&self, touch: &Touch) -> bool {
         touch.contact.distance < -TOUCHING * self.size
+    }
+
+    /// Places that no node led to, and that are looked at from now on.
+    pub(super) fn add(&mut self, at: [f64; 2]) {
+        self.missed.push(at);
+    }
+
+    /// Lets the next searches ask as often as if they were the first.
+    pub(super) const fn renew(&mut self) {
+        self.asked = 0;
     }
 
     /// A translation with the contact that it leads to.
@@ -233,6 +276,12 @@ impl<'a> Settling<'a> {
             } else if self.overlaps(touch) {
                 found.push(*touch);
             }
+        }
+        for at in &self.missed {
+            let (a, b) = (self.bodies[0].slice(at[0])?, body.slice(at[1])?);
+            let touch = a.touch(&b, &mut WarmStart::default(), FEW);
+            self.asked += LOWEST;
+            found.push(lowest([self.bodies[0], &body], &touch, half, &mut WarmStart::default())?);
         }
         Ok(found)
     }
