@@ -34,13 +34,13 @@ use crate::shape::InvalidShape;
 /// point's distance less the radius, which [`sphere`](super::sphere) gives exactly; here another minimum that is nearly
 /// as good may be found.
 ///
-/// Bounds are a millionth of the smaller body's size wide where they are apart, or what 4,000 pairs of slices show. A depth is shown
-/// to be at least 0.95
-/// of what was found where 300 cells of directions and 100,000 questions to slices suffice; else the bound is what they show. That it
-/// is little more than was found is shown for a translation a thousandth longer, or else for one out of the
-/// convex hull. Where both bodies are cut, a depth takes seconds, and is a little more than the least that is near (up to 1e-3 of the size was seen) where
-/// the search ends early; with exponents of 2 or near 0 tens of seconds, else mostly a tenth of one. What is not guaranteed: that no shorter
-/// translation exists between the bounds; one through a narrow gap can be missed.
+/// Bounds are a millionth of the smaller body's size wide where they are apart, or what 4,000 pairs of slices show. A depth
+/// is shown to be at least 0.95 of what was found where 300 cells of directions and 50,000 questions to slices suffice;
+/// else the bound is what they show. That it is little more than was found is shown for a translation a thousandth
+/// longer, or else for one out of the convex hull. The translation parts all slices, those between the ones that were asked
+/// at first too, but for a millionth of the size. What is not guaranteed: that no shorter one exists between
+/// the bounds; one through a narrow gap can be missed. Where one body is cut, a depth mostly takes a tenth of a second;
+/// where both are, or with exponents of 2 or near 0, seconds, and up to tens.
 ///
 /// Fails where lengths overflow.
 ///
