@@ -41,6 +41,8 @@ const LEVELS: usize = 3;
 pub struct Pieces {
     surface: Surface,
     compound: Compound,
+    /// The convex hull of a toroid: all that a half space can touch.
+    hull: Option<ConvexSolid>,
     /// Mass properties for a density of 1 kg/m³.
     mass: Mass,
     finder: Option<ClosestFinder>,
@@ -59,23 +61,28 @@ impl Pieces {
         if surface.exponents().iter().any(|e| *e > 2.0) {
             return None;
         }
-        let pieces = match surface {
-            Surface::Supertoroid(toroid) => {
-                solids(sectors(toroid)?, &mass, ConvexSolid::from_sector)
-            }
-            _ => solids(slices(surface)?, &mass, ConvexSolid::from_hull),
+        let Surface::Supertoroid(toroid) = surface else {
+            let compound = Compound::new(solids(slices(surface)?, &mass, ConvexSolid::from_hull));
+            return Some(Self { surface: *surface, compound, hull: None, mass, finder: None });
         };
-        let compound = Compound::new(pieces);
-        let finder = match surface {
-            Surface::Supertoroid(toroid) => Some(ClosestFinder::supertoroid(toroid)),
-            _ => None,
-        };
-        Some(Self { surface: *surface, compound, mass, finder })
+        let sectors = solids(sectors(toroid)?, &mass, ConvexSolid::from_sector);
+        Some(Self {
+            surface: *surface,
+            compound: Compound::new(sectors),
+            hull: Some(ConvexSolid::from_sector(Sector::ring(toroid)?, mass)),
+            mass,
+            finder: Some(ClosestFinder::supertoroid(toroid)),
+        })
     }
 
     /// The solid itself.
     pub const fn surface(&self) -> &Surface {
         &self.surface
+    }
+
+    /// The convex hull, where it is known.
+    pub(crate) const fn hull(&self) -> Option<&ConvexSolid> {
+        self.hull.as_ref()
     }
 
     /// The convex pieces, each with its pose in the solid's frame.

@@ -1,4 +1,4 @@
-//! The convex hull of a sector of a supertoroid, between two angles around z.
+//! The convex hull of a supertoroid, or of a sector of it between two angles around z.
 //!
 //! At the angle `ω` the toroid's slice lies in the plane of the spoke `p(ω) = (a1 cos^ε2 ω, a2 sin^ε2 ω)`: along it from
 //! `a4 - 1` to `a4 + 1` of its length, `a3` up and down. With `s = p·n` its support function is
@@ -12,37 +12,48 @@ use supersurface::numeric::powers::{quadrant_cos_sin, signed_power};
 use supersurface::shape::{Superellipsoid, Supertoroid, SupportMap};
 use supersurface::{Point, Vector};
 
-/// A sector's hull in the toroid's frame.
+/// A hull in the toroid's frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Sector {
     toroid: Supertoroid,
-    /// The spokes at both ends, counter-clockwise.
-    ends: [[f64; 2]; 2],
+    /// Where it begins and ends, counter-clockwise; `None` for the whole ring.
+    ends: Option<[End; 2]>,
     /// The section in the plane of x and z for a spoke of unit length.
     section: Superellipsoid,
     /// The superellipse of the spokes, as a body whose height does not matter.
     spokes: Superellipsoid,
 }
 
+/// An end of a sector: its spoke, and the normal of the superellipse of spokes there.
+#[derive(Clone, Debug)]
+struct End {
+    spoke: [f64; 2],
+    normal: [f64; 2],
+}
+
 impl Sector {
-    /// All sectors of a toroid: `count` of them, a multiple of 8, so that the corners of square rings are seams. The
-    /// exponents are at most 2.
-    pub(crate) fn all(toroid: &Supertoroid, count: usize) -> Option<Vec<Self>> {
+    /// The hull of a whole ring.
+    pub(crate) fn ring(toroid: &Supertoroid) -> Option<Self> {
         let [a, b, c] = toroid.semi_axes();
         let [e1, e2] = toroid.exponents();
         let spokes = Superellipsoid::new([a, b, a.min(b)], [1.0, e2]).ok()?;
         let section = Superellipsoid::new([1.0, 1.0, c], [e1, 1.0]).ok()?;
-        let spoke = |k: usize| spoke(toroid, k as f64 / count as f64 * TAU);
-        let sectors = (0..count).map(|k| {
-            let ends = [spoke(k), spoke((k + 1) % count)];
-            Self { toroid: *toroid, ends, section, spokes }
-        });
-        Some(sectors.collect())
+        Some(Self { toroid: *toroid, ends: None, section, spokes })
+    }
+
+    /// All sectors of a toroid: `count` of them, a multiple of 8, so that the corners of square rings are seams. The
+    /// exponents are at most 2.
+    pub(crate) fn all(toroid: &Supertoroid, count: usize) -> Option<Vec<Self>> {
+        let ring = Self::ring(toroid)?;
+        let end = |k: usize| End::at(toroid, k as f64 / count as f64 * TAU);
+        let ends = |k| Some([end(k), end((k + 1) % count)]);
+        Some((0..count).map(|k| Self { ends: ends(k), ..ring.clone() }).collect())
     }
 
     /// How far the chords of the hole's side lie inside of the hole, at most, in metres.
     pub(crate) fn deviation(&self) -> f64 {
-        let [from, to] = self.ends;
+        let Some([from, to]) = &self.ends else { return 0.0 };
+        let [from, to] = [from.spoke, to.spoke];
         let chord = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
         let Some(out) = Vector::new(chord.y, -chord.x, 0.0).try_normalize(0.0) else { return 0.0 };
         let touched = self.reach(&[out.x, out.y]);
@@ -52,14 +63,20 @@ impl Sector {
 
     /// The spoke of the arc that reaches farthest along a direction.
     fn reach(&self, n: &[f64; 2]) -> [f64; 2] {
-        let touched = self.spokes.support_point(&Vector::new(n[0], n[1], 0.0));
-        let [from, to] = self.ends;
-        let touched = [touched.x, touched.y];
-        if turns_left(&from, &touched) && turns_left(&touched, &to) {
-            return touched;
+        let touched = || {
+            let p = self.spokes.support_point(&Vector::new(n[0], n[1], 0.0));
+            [p.x, p.y]
+        };
+        let Some([from, to]) = &self.ends else { return touched() };
+        // of most directions no power needs to be known
+        if turns_left(&from.normal, n) && turns_left(n, &to.normal) {
+            let touched = touched();
+            if turns_left(&from.spoke, &touched) && turns_left(&touched, &to.spoke) {
+                return touched;
+            }
         }
-        let along = |p: &[f64; 2]| p[0] * n[0] + p[1] * n[1];
-        if along(&from) >= along(&to) { from } else { to }
+        let along = |end: &End| end.spoke[0] * n[0] + end.spoke[1] * n[1];
+        if along(from) >= along(to) { from.spoke } else { to.spoke }
     }
 }
 
@@ -73,12 +90,15 @@ impl SupportMap for Sector {
     }
 }
 
-/// The superellipse of the spokes at a parametric angle.
-fn spoke(toroid: &Supertoroid, angle: f64) -> [f64; 2] {
-    let [a, b, _] = toroid.semi_axes();
-    let [_, e2] = toroid.exponents();
-    let (cos, sin) = quadrant_cos_sin(angle);
-    [a * signed_power(cos, e2), b * signed_power(sin, e2)]
+impl End {
+    /// At a parametric angle.
+    fn at(toroid: &Supertoroid, angle: f64) -> Self {
+        let [a, b, _] = toroid.semi_axes();
+        let [_, e2] = toroid.exponents();
+        let (cos, sin) = quadrant_cos_sin(angle);
+        let spoke = [a * signed_power(cos, e2), b * signed_power(sin, e2)];
+        Self { spoke, normal: [signed_power(cos, 2.0 - e2) / a, signed_power(sin, 2.0 - e2) / b] }
+    }
 }
 
 fn turns_left(from: &[f64; 2], to: &[f64; 2]) -> bool {

@@ -3,7 +3,7 @@
 //! | pair | contact and distance | manifold |
 //! |---|---|---|
 //! | two superellipsoids | exact ([`supersurface::contact::pair`]), warm started | polygons clipped, and the exact point |
-//! | a half space and a [`ConvexSolid`] | exact | four points of the solid, and the exact lowest one |
+//! | a half space and a [`ConvexSolid`] or a ring | exact | four points of the solid, and the exact lowest one |
 //! | a [`ConvexSolid`] and a cuboid, hull, triangle, … | by parry's GJK and EPA | polygons clipped, and the nearest point |
 //! | cut solids, compounds, meshes | those of their parts | those of their parts |
 //! | anything else | parry's default | parry's default |
@@ -31,6 +31,7 @@ use supersurface::contact::WarmStart;
 
 pub use self::supported::UnsupportedPair;
 use crate::convex::ConvexSolid;
+use crate::pieces::Pieces;
 
 /// The dispatcher: it answers for this crate's shapes and leaves all others to parry's default one.
 ///
@@ -56,6 +57,12 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
+        // a half space touches nothing of a ring but its hull
+        let [g1, g2] = match [g1.as_halfspace(), g2.as_halfspace()] {
+            [Some(_), None] => [g1, hull(g2)],
+            [None, Some(_)] => [hull(g1), g2],
+            _ => [g1, g2],
+        };
         // the order of parry's own; the parts of a shape with parts come back to this dispatcher
         let is = |kind: ShapeType| [g1, g2].iter().any(|g| g.shape_type() == kind);
         match [g1.as_composite_shape(), g2.as_composite_shape()] {
@@ -127,5 +134,13 @@ where
         };
         manifold::fill(manifold, pos12, [g1, g2], [constraints1, constraints2], touch);
         Ok(())
+    }
+}
+
+/// The convex hull of a cut solid where it is known, else the shape itself.
+fn hull(shape: &dyn Shape) -> &dyn Shape {
+    match shape.as_shape::<Pieces>().and_then(Pieces::hull) {
+        Some(hull) => hull,
+        None => shape,
     }
 }
