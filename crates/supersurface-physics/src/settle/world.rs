@@ -16,7 +16,7 @@ use crate::dispatch::Dispatcher;
 use crate::shape::shape;
 
 /// Contacts are predicted from this share of a body's half size on.
-const PREDICTION: f64 = 0.1;
+const PREDICTION: f64 = 0.03;
 /// A pair's contacts are taken from the step before while it moved by less than this share of the half size, and at most
 /// [`FARTHEST`] metres.
 const RECYCLED: f64 = 2e-3;
@@ -246,7 +246,7 @@ impl Fall {
 ///
 /// ```
 /// let parameters = supersurface_physics::integration_parameters(0.03, 240.0);
-/// assert!((parameters.prediction_distance() - 0.003).abs() < 1e-15);
+/// assert!((parameters.prediction_distance() - 0.0009).abs() < 1e-15);
 /// ```
 pub fn integration_parameters(half_size: f64, rate: f64) -> IntegrationParameters {
     let spring = |share: f64| SpringCoefficients::new(share * rate, DAMPING);
