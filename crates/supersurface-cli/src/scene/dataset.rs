@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use supersurface_io::write_text;
 
-use super::args::DatasetArgs;
+use super::args::{DatasetArgs, formats};
 use super::make::{Given, Made, folder, given, make};
 use crate::exit::{Failure, print};
 use crate::progress::Progress;
@@ -30,7 +30,7 @@ pub(super) fn run(args: &DatasetArgs) -> Result<(), Failure> {
     }
     let given = given(&args.make)?;
     folder(&args.output)?;
-    same_data_set(args)?;
+    same_data_set(args, &given)?;
     let missing: Vec<u32> = (0..args.scenes).filter(|k| !place(args, *k).exists()).collect();
     let count = missing.len();
     progress.begin("make", format!("making {count} scenes"));
@@ -74,19 +74,24 @@ fn place(args: &DatasetArgs, k: u32) -> PathBuf {
     args.output.join(shard(k)).join(format!("scene_{k:06}"))
 }
 
-/// Fails where the folder holds scenes of other arguments.
-fn same_data_set(args: &DatasetArgs) -> Result<(), Failure> {
+/// Fails where the folder holds scenes that were made otherwise: what decides is the content of files, not their names.
+fn same_data_set(args: &DatasetArgs, given: &Given) -> Result<(), Failure> {
     let file = args.output.join("dataset.json");
+    let make = &args.make;
+    let things: Vec<String> = given.things.iter().map(|kind| format!("{kind:?}")).collect();
     let told = format!(
         "{:#}\n",
         json!({
-            "format": "supersurface-dataset", "version": 1, "seed": args.seed, "made": format!("{:?}", args.make),
+            "format": "supersurface-dataset", "version": 1, "seed": args.seed, "count": make.count,
+            "layout": format!("{:?}", make.layout.layout()), "formats": format!("{:?}", formats(&make.formats)),
+            "views": make.views, "noise": format!("{:?}", make.noise.model()), "things": things,
+            "gripper": given.gripper.as_ref().map(|gripper| format!("{gripper:?}")),
         })
     );
     match fs::read_to_string(&file) {
         Ok(before) if before == told => Ok(()),
         Ok(_) => Err(Failure::usage(format!(
-            "{}: the folder holds a data set of other arguments; take another folder",
+            "{}: the folder holds a data set of other arguments or lists; take another folder",
             args.output.display()
         ))),
         Err(_) => write_text(&file, &told).map_err(Failure::output),

@@ -43,8 +43,8 @@ pub(super) fn recipes(things: &str, noise: &NoiseArgs) -> Result<Vec<Recipe>, Fa
 
 /// What files say that the arguments name.
 pub(super) struct Given {
-    things: Vec<Recipe>,
-    gripper: Option<Gripper>,
+    pub(super) things: Vec<Recipe>,
+    pub(super) gripper: Option<Gripper>,
 }
 
 /// Reads the files that the arguments name, once the others are right.

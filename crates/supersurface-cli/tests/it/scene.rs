@@ -143,6 +143,25 @@ fn a_data_set_that_was_cut_off_is_completed_to_the_same_bytes() {
 }
 
 #[test]
+fn a_data_set_is_that_of_its_list_whatever_this_is_called() {
+    let folder = scratch("dataset_things");
+    let _ = fs::remove_dir_all(&folder);
+    let list = |name: &str, density: u32| {
+        let things = scratch(name);
+        let kind = format!(
+            "[[kind]]\nname = \"egg\"\ndensity = {density}\nfriction = 0.5\n\
+             shape.superellipsoid = {{ semi_axes = [0.03, 0.02, 0.02], exponents = [1, 1] }}\n"
+        );
+        fs::write(&things, kind).unwrap();
+        let words = ["scene", "dataset", "--scenes", "1", "-n", "1", "--views", "0", "-o"];
+        run(&[&words[..], &[text(&folder), "--things", text(&things)]].concat())
+    };
+    list("dataset_eggs.toml", 500).ended(0);
+    list("dataset_same.toml", 500).ended(0);
+    list("dataset_eggs.toml", 600).ended(2);
+}
+
+#[test]
 fn what_is_recovered_is_the_same_on_any_number_of_threads() {
     let things = scratch("recover_things.toml");
     let kind = "[[kind]]\nname = \"egg\"\ndensity = 500\nfriction = 0.5\nshape.superellipsoid = { \
