@@ -230,8 +230,9 @@ def mujoco_holes(scene):
     for geom in spec.geoms:
         if geom.contype:  # others are to be seen only
             geom.contype |= sum(bits.values()) if geom.parent.name == "world" else bits.get(geom.parent.name, 0)
-    for k, (body, centre, _, _, hole, _) in enumerate(level):
-        rod = spec.worldbody.add_body(name=f"rod {k}", pos=centre + [0, 0, 0.1])
+    for k, (body, centre, _, a, hole, _) in enumerate(level):
+        # right above: a shelf's next board is near
+        rod = spec.worldbody.add_body(name=f"rod {k}", pos=centre + [0, 0, a[2] + 0.5 * hole + 0.021])
         rod.add_freejoint()
         rod.add_geom(type=capsule, size=[0.5 * hole, 0.02, 0], mass=0.02, contype=0, conaffinity=bits[body])
     model, data = started(mujoco, spec)
