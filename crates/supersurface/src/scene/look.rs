@@ -2,7 +2,7 @@
 
 use crate::camera::{Camera, DepthImage};
 use crate::numeric::random::{Stream, normals};
-use crate::scene::rays::{Rays, Seen};
+use crate::scene::rays::{MOST, Rays, Seen};
 use crate::scene::tiles::{ROWS, Run, Tiles};
 use crate::scene::{DepthNoise, Scene};
 use crate::{Point, Pose, Vector};
@@ -43,44 +43,78 @@ pub fn look(
     noise: &DepthNoise,
     seed: u64,
 ) -> Look {
-    let [width, height] = camera.size();
-    let rays = Rays::new(scene, camera_pose);
-    let tiles = Tiles::of(camera);
-    let pixels = width * height;
-    let exact = *noise == DepthNoise::none();
-    let mut depth = vec![0.0; pixels];
-    let mut incidence = vec![0.0; if exact { 0 } else { pixels }];
-    let (mut seen, mut normals) = (vec![0; pixels], vec![[0.0; 3]; pixels]);
-    let band = ROWS * width;
-    let incidences = incidence.chunks_mut(band).map(Some).chain(repeat_with(|| None));
-    let bands = depth.chunks_mut(band).zip(incidences);
-    let bands = bands.zip(seen.chunks_mut(band).zip(normals.chunks_mut(band)));
-    each(bands.collect(), |band, ((depth, mut incidence), (seen, normals))| {
-        let mut found = Seen::nothing();
-        for tile in tiles.band(band) {
-            let places = tiles.places(tile, noise.lateral, seed);
-            rays.see(&places.along(camera), &mut found);
-            for Run { place, pixel, length } in tiles.runs(tile) {
-                let (from, start) = (place..place + length, pixel - band * ROWS * width);
-                let to = start..start + length;
-                depth[to.clone()].copy_from_slice(&found.depth[from.clone()]);
-                if let Some(incidence) = &mut incidence {
-                    incidence[to.clone()].copy_from_slice(&found.incidence[from.clone()]);
+    let depth = DepthImage::empty(camera);
+    let mut look = Look { depth, labels: Vec::new(), seen: Vec::new(), normals: Vec::new() };
+    look.again(scene, camera, camera_pose, noise, seed);
+    look
+}
+
+impl Look {
+    /// What [`look`] returns, written over this one: the next frame of a camera, in the memory of the one before.
+    pub fn again(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        camera_pose: &Pose,
+        noise: &DepthNoise,
+        seed: u64,
+    ) {
+        let [width, height] = camera.size();
+        let rays = Rays::new(scene, camera_pose);
+        let tiles = Tiles::of(camera);
+        let pixels = width * height;
+        let exact = *noise == DepthNoise::none();
+        if self.depth.size() != camera.size() {
+            self.depth = DepthImage::empty(camera);
+        }
+        self.labels.resize(pixels, 0);
+        self.seen.resize(pixels, 0);
+        self.normals.resize(pixels, [0.0; 3]);
+        let mut incidence = vec![0.0; if exact { 0 } else { pixels }];
+        let band = ROWS * width;
+        let incidences = incidence.chunks_mut(band).map(Some).chain(repeat_with(|| None));
+        let bands = self.depth.depth_mut().chunks_mut(band).zip(self.normals.chunks_mut(band));
+        let bands = bands.zip(self.labels.chunks_mut(band).zip(self.seen.chunks_mut(band)));
+        each(bands.zip(incidences).collect(), |band, (images, mut incidence)| {
+            let ((depth, normals), (labels, seen)) = images;
+            let mut found = Seen::nothing();
+            for tile in tiles.band(band) {
+                let along = tiles.along(tile, camera, noise.lateral, seed);
+                rays.see(&along, &mut found);
+                for Run { place, pixel, length } in tiles.runs(tile) {
+                    let (from, start) = (place..place + length, pixel - band * ROWS * width);
+                    let to = start..start + length;
+                    for (to, from) in depth[to.clone()].iter_mut().zip(&found.depth[from.clone()]) {
+                        *to = if from.is_finite() { *from as f32 } else { f32::NAN };
+                    }
+                    labels[to.clone()].copy_from_slice(&found.label[from.clone()]);
+                    seen[to.clone()].copy_from_slice(&found.label[from.clone()]);
+                    for (normal, i) in normals[to].iter_mut().zip(from) {
+                        *normal = [0, 1, 2].map(|k| found.normal[k][i]);
+                    }
                 }
-                seen[to.clone()].copy_from_slice(&found.label[from.clone()]);
-                for (normal, i) in normals[to].iter_mut().zip(from) {
-                    *normal = [0, 1, 2].map(|k| found.normal[k][i]);
+                if let Some(incidence) = &mut incidence {
+                    let cosines = found.incidence(&along);
+                    for Run { place, pixel, length } in tiles.runs(tile) {
+                        let start = pixel - band * ROWS * width;
+                        incidence[start..start + length]
+                            .copy_from_slice(&cosines[place..place + length]);
+                    }
                 }
             }
+        });
+        if !exact {
+            self.err(noise, &incidence, seed);
         }
-    });
-    let errors = Errors::new(noise, width, height, seed);
-    let (depth, labels) = if exact {
-        depth.iter_mut().filter(|z| z.is_infinite()).for_each(|z| *z = f32::NAN);
-        (depth, seen.clone())
-    } else {
-        let (mut readings, mut labels) = (vec![f32::NAN; pixels], vec![0; pixels]);
-        let rows = readings.chunks_mut(width).zip(labels.chunks_mut(width));
+    }
+
+    /// Readings in place of depths.
+    fn err(&mut self, noise: &DepthNoise, incidence: &[f32], seed: u64) {
+        let [width, height] = self.depth.size();
+        let errors = Errors::new(noise, width, height, seed);
+        let depth = self.depth.depth().to_vec();
+        let seen = &self.seen;
+        let rows = self.depth.depth_mut().chunks_mut(width).zip(self.labels.chunks_mut(width));
         each(rows.collect(), |v, (readings, labels)| {
             for (u, error) in errors.row(v).into_iter().enumerate() {
                 let i = v * width + u;
@@ -93,11 +127,7 @@ pub fn look(
                 }
             }
         });
-        (readings, labels)
-    };
-    let depth = DepthImage::new([width, height], depth);
-    let depth = depth.unwrap_or_else(|| DepthImage::empty(camera));
-    Look { depth, labels, seen, normals }
+    }
 }
 
 /// Errors of the readings in standard deviations.
@@ -147,15 +177,18 @@ pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64
     let tiles = Tiles::of(camera);
     // pixels in which each body is seen, and in which it would be
     let counts = gather(tiles.count(), |tile| {
-        let along = tiles.places(tile, 0.0, 0).along(camera);
-        let alone = rays.alone(&along);
-        let mut counts: Vec<[u32; 2]> = alone.into_iter().map(|n| [0, n]).collect();
+        let along = tiles.along(tile, camera, 0.0, 0);
         let mut seen = Seen::nothing();
         rays.see(&along, &mut seen);
-        for label in seen.label.iter().take(along.count).filter(|label| **label > 0) {
-            counts[*label as usize - 1][0] += 1;
-        }
-        counts
+        let count = |(met, label): (&[bool; MOST], u32)| -> [u32; 2] {
+            let mut counts = [0, 0];
+            for i in tiles.runs(tile).flat_map(|run| run.place..run.place + run.length) {
+                counts[0] += u32::from(seen.label[i] == label);
+                counts[1] += u32::from(met[i]);
+            }
+            counts
+        };
+        rays.alone(&along).iter().zip(1..).map(count).collect::<Vec<_>>()
     });
     let sum = |k: usize, of: usize| counts.iter().map(|tile| f64::from(tile[k][of])).sum::<f64>();
     (0..scene.bodies.len()).map(|k| sum(k, 0) / sum(k, 1).max(1.0)).collect()
@@ -189,8 +222,9 @@ fn each<T>(pieces: Vec<T>, f: impl Fn(usize, T)) {
 
 /// True when a neighbour is much nearer or farther.
 fn beside_a_jump(depth: &[f32], i: usize, width: usize) -> bool {
-    let at = |j: Option<usize>| j.and_then(|j| depth.get(j)).map_or(f32::NAN, |z| *z);
-    let here = at(Some(i));
+    let here = depth.get(i).copied().unwrap_or(f32::NAN);
+    // NaN where nothing is met
+    let jumps = |z: &f32| z.is_nan() || (z - here).abs() > JUMP * here;
     let column = i % width;
     let neighbours = [
         (column > 0).then(|| i - 1),
@@ -198,5 +232,5 @@ fn beside_a_jump(depth: &[f32], i: usize, width: usize) -> bool {
         i.checked_sub(width),
         Some(i + width),
     ];
-    neighbours.into_iter().any(|j| (at(j) - here).abs() > JUMP * here)
+    neighbours.into_iter().flatten().filter_map(|j| depth.get(j)).any(jumps)
 }

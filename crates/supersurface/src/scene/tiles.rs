@@ -1,13 +1,17 @@
 //! An image cut into tiles of pixels, whose rays are looked at together.
 
-use super::rays::{Along, MOST};
+use super::rays::{Along, MOST, RAYS};
 use crate::camera::Camera;
 use crate::numeric::random::normals;
 
 /// Columns and rows of a tile.
 const COLUMNS: usize = 16;
 pub(super) const ROWS: usize = 8;
-const _: () = assert!(COLUMNS * ROWS <= MOST);
+const _: () = assert!(COLUMNS * ROWS == MOST);
+/// Pixels of a run.
+pub(super) const RUN: usize = 8;
+/// Rows of the pixels whose rays are a block.
+const DEEP: usize = RAYS / RUN;
 
 /// The tiles of an image, in rows.
 pub(super) struct Tiles {
@@ -15,21 +19,14 @@ pub(super) struct Tiles {
     across: usize,
 }
 
-/// A row of a tile.
+/// Neighbours in a row of a tile.
 pub(super) struct Run {
     /// Of its first pixel in the tile.
     pub(super) place: usize,
     /// Of its first pixel in the image.
     pub(super) pixel: usize,
-    /// Number of pixels.
+    /// Number of pixels, [`RUN`] but at the image's right end.
     pub(super) length: usize,
-}
-
-/// Where the rays of a tile pass the image.
-pub(super) struct Places {
-    count: usize,
-    across: [f64; MOST],
-    down: [f64; MOST],
 }
 
 impl Tiles {
@@ -47,45 +44,49 @@ impl Tiles {
         band * self.across..(band + 1) * self.across
     }
 
-    /// The rows of a tile.
-    pub(super) fn runs(&self, tile: usize) -> impl Iterator<Item = Run> {
+    /// Column and row of the first pixel of a tile's run: those of a block lie below each other.
+    fn corner(&self, tile: usize, run: usize) -> [usize; 2] {
         let [left, top] = [tile % self.across * COLUMNS, tile / self.across * ROWS];
+        let (block, row) = (run / DEEP, run % DEEP);
+        let across = COLUMNS / RUN;
+        [left + block % across * RUN, top + block / across * DEEP + row]
+    }
+
+    /// The runs of a tile that are in the image.
+    pub(super) fn runs(&self, tile: usize) -> impl Iterator<Item = Run> {
         let [width, height] = self.size;
-        let length = COLUMNS.min(width - left);
-        let run = move |row| Run { place: row * length, pixel: (top + row) * width + left, length };
-        (0..ROWS.min(height - top)).map(run)
+        (0..MOST / RUN).filter_map(move |k| {
+            let [u, v] = self.corner(tile, k);
+            let length = RUN.min(width.checked_sub(u)?);
+            (length > 0 && v < height).then_some(Run {
+                place: k * RUN,
+                pixel: v * width + u,
+                length,
+            })
+        })
     }
 
-    /// The middles of a tile's pixels, off by normal numbers of a deviation in pixels.
-    pub(super) fn places(&self, tile: usize, deviation: f64, seed: u64) -> Places {
-        let mut places = Places { count: 0, across: [0.0; MOST], down: [0.0; MOST] };
-        for Run { place, pixel, length } in self.runs(tile) {
-            let run = place..place + length;
-            let (across, down) = (&mut places.across[run.clone()], &mut places.down[run]);
-            if deviation != 0.0 {
-                normals(seed, pixel as u64, 0, across);
-                normals(seed, pixel as u64, 2, down);
+    /// The rays through the middles of a tile's pixels, off by normal numbers of a deviation in pixels; for places outside
+    /// of the image, rays of its last column or row.
+    pub(super) fn along(&self, tile: usize, camera: &Camera, deviation: f64, seed: u64) -> Along {
+        let (mut across, mut down) = ([0.0; MOST], [0.0; MOST]);
+        if deviation != 0.0 {
+            for Run { place, pixel, length } in self.runs(tile) {
+                normals(seed, pixel as u64, 0, &mut across[place..place + length]);
+                normals(seed, pixel as u64, 2, &mut down[place..place + length]);
             }
-            let [u, v] = [pixel % self.size[0], pixel / self.size[0]];
-            for (k, (across, down)) in across.iter_mut().zip(down).enumerate() {
-                *across = (u + k) as f64 + deviation * *across;
-                *down = v as f64 + deviation * *down;
-            }
-            places.count += length;
         }
-        places
-    }
-}
-
-impl Places {
-    /// Their rays.
-    pub(super) fn along(&self, camera: &Camera) -> Along {
-        let mut along = Along { count: self.count, x: [0.0; MOST], y: [0.0; MOST] };
-        let whole = ..self.count;
-        camera.unproject_all(
-            [&self.across[whole], &self.down[whole]],
-            [&mut along.x[whole], &mut along.y[whole]],
-        );
+        let last = self.size.map(|n| n.saturating_sub(1) as f64);
+        let rows = across.as_chunks_mut::<RUN>().0.iter_mut().zip(down.as_chunks_mut::<RUN>().0);
+        for (run, (across, down)) in rows.enumerate() {
+            let [u, v] = self.corner(tile, run).map(|k| k as f64);
+            for k in 0..RUN {
+                across[k] = (u + k as f64).min(last[0]) + deviation * across[k];
+                down[k] = v.min(last[1]) + deviation * down[k];
+            }
+        }
+        let mut along = Along { x: [0.0; MOST], y: [0.0; MOST] };
+        camera.unproject_all([&across, &down], [&mut along.x, &mut along.y]);
         along
     }
 }

@@ -7,11 +7,11 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Gauge, Row, gauge};
+use super::block::{Block, Gauge, RAYS, Row, gauge};
 use super::march::{Floor, Marched};
 use crate::Vector;
 use crate::deform::{Bend, Deformed};
-use crate::numeric::lanes::{Lane, WIDTH, arc_tangent_ratio};
+use crate::numeric::lanes::{Lane, arc_tangent_ratio};
 use crate::shape::{Implicit, Superellipsoid};
 
 /// How far a step leads behind the half plane at which angles jump, in radii of the bend.
@@ -50,9 +50,9 @@ impl Marched for Bent {
         let (k, [nx, ny]) = (self.curvature, self.inwards);
         let d = &block.directions;
         let p = block.at::<FUSED>(t);
-        let (mut u, mut h) = (p, [0.0; WIDTH]);
-        let (mut turn, mut fall) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for i in 0..WIDTH {
+        let (mut u, mut h) = (p, [0.0; RAYS]);
+        let (mut turn, mut fall) = ([0.0; RAYS], [0.0; RAYS]);
+        for i in 0..RAYS {
             let across = nx * p[0][i] + ny * p[1][i];
             let a = k * p[2][i];
             let b = 1.0 - k * across;
@@ -74,11 +74,11 @@ impl Marched for Bent {
         let mut floor = Floor {
             value,
             slopes,
-            rate: [0.0; WIDTH],
-            bend: [0.0; WIDTH],
-            reach: [f64::INFINITY; WIDTH],
+            rate: [0.0; RAYS],
+            bend: [0.0; RAYS],
+            reach: [f64::INFINITY; RAYS],
         };
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             let across = nx * p[0][i] + ny * p[1][i];
             let b = 1.0 - k * across;
             let rise = nx * d[0][i] + ny * d[1][i];

@@ -9,16 +9,19 @@ use crate::numeric::superellipse::norm_of_logs;
 /// Coordinates nearer to a plane of symmetry count as this far from it, in semi-axes: their squares are numbers yet.
 const LEAST: f64 = 1e-150;
 
+/// Rays of a block: twice the lanes of other loops, as each step of Newton's method waits for the one before.
+pub(in crate::scene) const RAYS: usize = 2 * WIDTH;
+
 /// A number for each ray of a block.
-pub(super) type Row = [f64; WIDTH];
+pub(super) type Row = [f64; RAYS];
 
 /// Rays from one point, in the frame of a solid, each with the stretch on which it may meet the solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub(super) origin: [f64; 3],
-    /// Unit directions.
+    /// How the points move as depth grows: directions have a length of 1 along the optical axis.
     pub(super) directions: [Row; 3],
-    /// From here, outside the solid.
+    /// From this depth on, outside the solid.
     pub(super) near: Row,
     /// To here; a ray whose stretch is empty meets nothing.
     pub(super) far: Row,
@@ -28,16 +31,16 @@ impl Block {
     /// Without rays yet.
     #[inline(always)]
     pub(super) const fn from(origin: [f64; 3]) -> Self {
-        let none = [0.0; WIDTH];
+        let none = [0.0; RAYS];
         Self { origin, directions: [none; 3], near: none, far: none }
     }
 
-    /// The points at distances along the rays.
+    /// The points at depths along the rays.
     #[inline(always)]
     pub(super) fn at<const FUSED: bool>(&self, t: &Row) -> [Row; 3] {
-        let mut p = [[0.0; WIDTH]; 3];
+        let mut p = [[0.0; RAYS]; 3];
         for k in 0..3 {
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 p[k][i] = t[i].times_plus::<FUSED>(self.directions[k][i], self.origin[k]);
             }
         }
@@ -48,15 +51,14 @@ impl Block {
 /// Where the rays of a block meet a solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hits {
-    /// Distance along each ray in metres; infinite for one that misses.
-    pub(super) distance: Row,
+    /// Along the optical axis in metres; infinite for a ray that misses.
+    pub(super) depth: Row,
     /// Outward normal there, in the solid's frame and of any length.
     pub(super) normal: [Row; 3],
 }
 
 impl Hits {
-    pub(super) const NONE: Self =
-        Self { distance: [f64::INFINITY; WIDTH], normal: [[0.0; WIDTH]; 3] };
+    pub(super) const NONE: Self = Self { depth: [f64::INFINITY; RAYS], normal: [[0.0; RAYS]; 3] };
 }
 
 /// A solid whose first hits a block of rays is told at once.
@@ -76,14 +78,14 @@ pub(super) struct Gauge {
 pub(super) fn gauge<const FUSED: bool>(p: &[Row; 3], axes: [f64; 3], [e1, e2]: [f64; 2]) -> Gauge {
     let sizes: [Row; 3] = std::array::from_fn(|k| size(&p[k], axes[k]));
     let (planar, [s1, s2]) = norm::<FUSED>(&sizes[0], &sizes[1], e2);
-    let mut height = [0.0; WIDTH];
-    for i in 0..WIDTH {
+    let mut height = [0.0; RAYS];
+    for i in 0..RAYS {
         height[i] = ln::<FUSED>(sizes[2][i]);
     }
     let (whole, [s12, s3]) =
-        norm_of_logs::<FUSED, f64, WIDTH>(&planar, &height, &[2.0 / e1; WIDTH], &[0.5 * e1; WIDTH]);
-    let (mut value, mut slopes) = ([0.0; WIDTH], [[0.0; WIDTH]; 3]);
-    for i in 0..WIDTH {
+        norm_of_logs::<FUSED, f64, RAYS>(&planar, &height, &[2.0 / e1; RAYS], &[0.5 * e1; RAYS]);
+    let (mut value, mut slopes) = ([0.0; RAYS], [[0.0; RAYS]; 3]);
+    for i in 0..RAYS {
         value[i] = exp::<FUSED>(whole[i]);
         let shares = [s12[i] * s1[i], s12[i] * s2[i], s3[i]];
         for k in 0..3 {
@@ -96,8 +98,8 @@ pub(super) fn gauge<const FUSED: bool>(p: &[Row; 3], axes: [f64; 3], [e1, e2]: [
 /// Magnitudes of coordinates in semi-axes, not 0.
 #[inline(always)]
 pub(super) fn size(p: &Row, axis: f64) -> Row {
-    let (mut size, inverse) = ([0.0; WIDTH], 1.0 / axis);
-    for i in 0..WIDTH {
+    let (mut size, inverse) = ([0.0; RAYS], 1.0 / axis);
+    for i in 0..RAYS {
         size[i] = (p[i].abs() * inverse).most(LEAST);
     }
     size
@@ -106,10 +108,10 @@ pub(super) fn size(p: &Row, axis: f64) -> Row {
 /// Logarithm of `(x^q + y^q)^(1/q)` with `q = 2/ε` of positive numbers, and the share of each in the sum.
 #[inline(always)]
 pub(super) fn norm<const FUSED: bool>(x: &Row, y: &Row, exponent: f64) -> (Row, [Row; 2]) {
-    let (mut a, mut b) = ([0.0; WIDTH], [0.0; WIDTH]);
+    let (mut a, mut b) = ([0.0; RAYS], [0.0; RAYS]);
     if exponent == 1.0 {
-        let mut log = [0.0; WIDTH];
-        for i in 0..WIDTH {
+        let mut log = [0.0; RAYS];
+        for i in 0..RAYS {
             let (xx, yy) = (x[i] * x[i], y[i] * y[i]);
             let sum = xx + yy;
             log[i] = 0.5 * ln::<FUSED>(sum);
@@ -117,9 +119,9 @@ pub(super) fn norm<const FUSED: bool>(x: &Row, y: &Row, exponent: f64) -> (Row, 
         }
         return (log, [a, b]);
     }
-    for i in 0..WIDTH {
+    for i in 0..RAYS {
         (a[i], b[i]) = (ln::<FUSED>(x[i]), ln::<FUSED>(y[i]));
     }
-    let (q, r) = ([2.0 / exponent; WIDTH], [0.5 * exponent; WIDTH]);
-    norm_of_logs::<FUSED, f64, WIDTH>(&a, &b, &q, &r)
+    let (q, r) = ([2.0 / exponent; RAYS], [0.5 * exponent; RAYS]);
+    norm_of_logs::<FUSED, f64, RAYS>(&a, &b, &q, &r)
 }

@@ -12,8 +12,8 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Gauge, Hits, Solid, gauge};
-use crate::numeric::lanes::{Lane, WIDTH};
+use super::block::{Block, Gauge, Hits, RAYS, Solid, gauge};
+use crate::numeric::lanes::Lane;
 use crate::surface::Surface;
 
 /// Steps after which a ray that neither arrived nor missed is taken to miss.
@@ -60,13 +60,13 @@ impl Planes {
     /// Those at the first and the last hit.
     #[inline(always)]
     fn keep(&mut self, block: &Block, hits: &Hits) {
-        let met = |i: &usize| hits.distance[*i].is_finite();
-        let ends = [(0..WIDTH).find(met), (0..WIDTH).rfind(met)];
+        let met = |i: &usize| hits.depth[*i].is_finite();
+        let ends = [(0..RAYS).find(met), (0..RAYS).rfind(met)];
         for i in ends.into_iter().flatten() {
             let normal = hits.normal.map(|row| row[i]);
             let along: f64 = (0..3).map(|k| normal[k] * block.directions[k][i]).sum();
             if let Some(place) = self.planes.get_mut(self.next) {
-                *place = (normal, along * hits.distance[i]);
+                *place = (normal, along * hits.depth[i]);
                 self.next = (self.next + 1) % PLANES;
                 self.count = (self.count + 1).min(PLANES);
             }
@@ -93,7 +93,7 @@ impl Solid for Approach<'_> {
         let (d, far) = (&block.directions, &block.far);
         let mut t = block.near;
         for (normal, behind) in self.planes.planes.iter().take(self.planes.count) {
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 let mut along = normal[0] * d[0][i];
                 for k in 1..3 {
                     along = normal[k].times_plus::<FUSED>(d[k][i], along);
@@ -103,23 +103,23 @@ impl Solid for Approach<'_> {
             }
         }
         // 0 once a ray has arrived or missed
-        let mut live = [0.0; WIDTH];
+        let mut live = [0.0; RAYS];
         let mut hits = Hits::NONE;
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             live[i] = f64::from(u8::from(t[i] <= far[i]));
             t[i] = t[i].least(far[i]);
         }
         for _ in 0..STEPS {
             let p = block.at::<FUSED>(&t);
             let mut u = p;
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 let inverse = 1.0 / taper.times_plus::<FUSED>(p[2][i], 1.0);
                 u[0][i] *= inverse;
                 u[1][i] *= inverse;
             }
             let Gauge { value, slopes } = gauge::<FUSED>(&u, axes, exponents);
             let mut any = 0;
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 // the normal J^{-T} ∇g below the point, and how far the point is above the plane
                 let shrunk = 1.0 / value[i];
                 let widened = taper.times_plus::<FUSED>(p[2][i] * shrunk, 1.0);
@@ -133,7 +133,7 @@ impl Solid for Approach<'_> {
                 let arrived = value[i] - 1.0 <= ON_SURFACE || next <= t[i] && rate < 0.0;
                 let missed = rate >= 0.0 || next > far[i];
                 if live[i] > 0.0 && arrived {
-                    hits.distance[i] = t[i];
+                    hits.depth[i] = t[i];
                     (hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]) = (nx, ny, nz);
                 }
                 live[i] = if arrived || missed { 0.0 } else { live[i] };

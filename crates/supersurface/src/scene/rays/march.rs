@@ -10,8 +10,8 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Hits, Row, Solid};
-use crate::numeric::lanes::{Lane, WIDTH};
+use super::block::{Block, Hits, RAYS, Row, Solid};
+use crate::numeric::lanes::Lane;
 
 /// Steps after which a ray that neither arrived nor missed is taken to miss.
 const STEPS: usize = 250;
@@ -51,9 +51,9 @@ impl<S: Marched> Solid for March<S> {
     fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits {
         let far = &block.far;
         let mut t = block.near;
-        let (mut live, mut ahead) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let (mut live, mut ahead) = ([0.0; RAYS], [0.0; RAYS]);
         let mut hits = Hits::NONE;
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             live[i] = f64::from(u8::from(t[i] <= far[i]));
             t[i] = t[i].least(far[i]);
             ahead[i] = AHEAD * (far[i] - t[i]) + f64::TINY;
@@ -62,7 +62,7 @@ impl<S: Marched> Solid for March<S> {
             let Floor { value, slopes, rate, bend, reach } =
                 self.0.floor::<FUSED>(block, &t, &ahead);
             let mut any = 0;
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 let root = (rate[i] * rate[i] + 2.0 * bend[i] * value[i]).sqrt();
                 let falling = 2.0 * value[i] / (root - rate[i]);
                 let rising = (root + rate[i]) / bend[i];
@@ -73,7 +73,7 @@ impl<S: Marched> Solid for March<S> {
                 let arrived = value[i] <= ON_SURFACE || next <= t[i] && value[i] <= NEARLY;
                 let missed = next > far[i];
                 if live[i] > 0.0 && arrived {
-                    hits.distance[i] = t[i];
+                    hits.depth[i] = t[i];
                     for k in 0..3 {
                         hits.normal[k][i] = slopes[k][i];
                     }

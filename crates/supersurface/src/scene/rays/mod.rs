@@ -17,6 +17,7 @@ mod tapered;
 mod target;
 mod twisted;
 
+pub(super) use block::RAYS;
 pub(super) use bundle::{Along, MOST};
 
 use bundle::{Bundle, Column};
@@ -37,9 +38,7 @@ pub(super) struct Rays<'a> {
 /// What the rays of a bundle meet first.
 pub(super) struct Seen {
     /// Along the optical axis, in metres; infinite where nothing is met.
-    pub(super) depth: [f32; MOST],
-    /// Cosine of the angle between ray and normal.
-    pub(super) incidence: [f32; MOST],
+    pub(super) depth: Column,
     /// Number of the body from 1; 0 for what is no body.
     pub(super) label: [u32; MOST],
     /// Outward unit normal in the optical frame; zero where nothing is met.
@@ -48,12 +47,7 @@ pub(super) struct Seen {
 
 impl Seen {
     pub(super) const fn nothing() -> Self {
-        Self {
-            depth: [f32::INFINITY; MOST],
-            incidence: [1.0; MOST],
-            label: [0; MOST],
-            normal: [[0.0; MOST]; 3],
-        }
+        Self { depth: [f64::INFINITY; MOST], label: [0; MOST], normal: [[0.0; MOST]; 3] }
     }
 }
 
@@ -66,14 +60,13 @@ impl<'a> Rays<'a> {
         });
         let boards = scene.boards.iter().filter_map(|board| Target::board(board, pose));
         let mut targets: Vec<Target> = boards.chain(parts).collect();
-        targets.sort_by(|a, b| a.nearest().total_cmp(&b.nearest()));
+        targets.sort_by(|a, b| a.nearest.total_cmp(&b.nearest));
         Self { scene, targets, pose: *pose }
     }
 
     /// What the rays meet first.
     pub(super) fn see(&self, along: &Along, seen: &mut Seen) {
         let bundle = Bundle::new(along, &self.pose);
-        let mut nearest = [f64::INFINITY; MOST];
         let up = self.scene.support.normal();
         let origin = Point::from(self.pose.translation.vector);
         dispatch(Table {
@@ -83,32 +76,41 @@ impl<'a> Rays<'a> {
             half_size: self.scene.half_size,
             normal: self.pose.rotation.inverse_transform_vector(&up).cast::<f32>().into(),
             directions: &bundle.directions,
-            distance: &mut nearest,
             seen,
         });
         for target in self.targets.iter().filter(|t| t.is_near(&bundle)) {
-            target.meet(&bundle, &mut nearest, seen);
-        }
-        for i in 0..MOST {
-            seen.depth[i] = (nearest[i] / bundle.lengths[i]) as f32;
+            target.meet(&bundle, seen);
         }
     }
 
-    /// How many of the rays would meet each body, were nothing before it.
-    pub(super) fn alone(&self, along: &Along) -> Vec<u32> {
+    /// Which of the rays would meet each body, were nothing before it.
+    pub(super) fn alone(&self, along: &Along) -> Vec<[bool; MOST]> {
         let bundle = Bundle::new(along, &self.pose);
         let mut seen = Seen::nothing();
         let mut met_by = vec![[false; MOST]; self.scene.bodies.len()];
         for target in self.targets.iter().filter(|t| t.is_near(&bundle)) {
             let body = met_by.get_mut((target.label as usize).wrapping_sub(1));
             let Some(body) = body else { continue };
-            let mut nearest = [f64::INFINITY; MOST];
-            target.meet(&bundle, &mut nearest, &mut seen);
-            body.iter_mut().zip(nearest).for_each(|(met, t)| *met |= t.is_finite());
+            seen.depth = [f64::INFINITY; MOST];
+            target.meet(&bundle, &mut seen);
+            body.iter_mut().zip(&seen.depth).for_each(|(met, t)| *met |= t.is_finite());
         }
-        let count =
-            |rays: &[bool; MOST]| rays.iter().take(bundle.count).filter(|met| **met).count();
-        met_by.iter().map(|rays| count(rays) as u32).collect()
+        met_by
+    }
+}
+
+impl Seen {
+    /// Cosine of the angle between each ray and the normal where it ends; 1 where nothing is met.
+    pub(super) fn incidence(&self, along: &Along) -> [f32; MOST] {
+        let mut cosines = [1.0; MOST];
+        let [nx, ny, nz] = &self.normal;
+        for i in 0..MOST {
+            let (x, y) = (along.x[i], along.y[i]);
+            let [nx, ny, nz] = [nx[i], ny[i], nz[i]].map(f64::from);
+            let cosine = (nx * x + ny * y + nz).abs() / (x * x + y * y + 1.0).sqrt();
+            cosines[i] = if self.depth[i].is_finite() { cosine as f32 } else { 1.0 };
+        }
+        cosines
     }
 }
 
@@ -121,7 +123,6 @@ struct Table<'a> {
     /// In the optical frame.
     normal: [f32; 3],
     directions: &'a [Column; 3],
-    distance: &'a mut Column,
     seen: &'a mut Seen,
 }
 
@@ -137,8 +138,7 @@ impl Job for Table<'_> {
             let x = t.times_plus::<FUSED>(xs[i], self.origin[0]).abs();
             let y = t.times_plus::<FUSED>(ys[i], self.origin[1]).abs();
             let on = t > 0.0 && x <= self.half_size[0] && y <= self.half_size[1];
-            self.distance[i] = if on { t } else { f64::INFINITY };
-            self.seen.incidence[i] = if on { along.abs() as f32 } else { 1.0 };
+            self.seen.depth[i] = if on { t } else { f64::INFINITY };
             self.seen.label[i] = 0;
             for k in 0..3 {
                 self.seen.normal[k][i] = if on { self.normal[k] } else { 0.0 };
@@ -175,15 +175,16 @@ mod tests {
             scene.bodies.push(Body::single("it", surface, Pose::identity()).unwrap());
             let pose = facing(&eye, &Point::from(around(0.25)));
             let [x, y] = [(); 2].map(|()| [(); MOST].map(|()| stream.between(-0.3, 0.3)));
-            let along = Along { count: MOST, x, y };
+            let along = Along { x, y };
             let bundle = Bundle::new(&along, &pose);
-            let (mut nearest, mut seen) = ([f64::INFINITY; MOST], Seen::nothing());
+            let mut seen = Seen::nothing();
             let rays = Rays::new(&scene, &pose);
             for target in rays.targets.iter().filter(|t| t.is_near(&bundle)) {
-                target.meet(&bundle, &mut nearest, &mut seen);
+                target.meet(&bundle, &mut seen);
             }
-            for (i, quick) in nearest.into_iter().enumerate() {
+            for (i, depth) in seen.depth.into_iter().enumerate() {
                 let along = Vector::new(x[i], y[i], 1.0);
+                let quick = depth * along.norm();
                 let ray = Ray { origin: eye, direction: pose * Direction::new_normalize(along) };
                 let slow = first_hit(&surface, &ray, 100.0 * size);
                 counts[usize::from(!quick.is_finite())] += 1;

@@ -6,9 +6,9 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Row, norm, size};
+use super::block::{Block, RAYS, Row, norm, size};
 use super::march::{Floor, Marched};
-use crate::numeric::lanes::{Lane, WIDTH, exp};
+use crate::numeric::lanes::{Lane, exp};
 use crate::shape::Supertoroid;
 
 /// A toroid whose sections are convex.
@@ -35,10 +35,10 @@ impl Marched for Ring {
         let d = &block.directions;
         let p = block.at::<FUSED>(t);
         let (log, shares) = self.radius::<FUSED>(&p);
-        let (mut radius, mut slopes) = ([0.0; WIDTH], [[0.0; WIDTH]; 3]);
-        let (mut offset, mut rise) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let (mut radius, mut slopes) = ([0.0; RAYS], [[0.0; RAYS]; 3]);
+        let (mut offset, mut rise) = ([0.0; RAYS], [0.0; RAYS]);
         let mut within = 0u64;
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             radius[i] = exp::<FUSED>(log[i]);
             offset[i] = radius[i] - a4;
             let [x, y] = [p[0][i].abs().most(f64::TINY), p[1][i].abs().most(f64::TINY)];
@@ -47,28 +47,28 @@ impl Marched for Ring {
             rise[i] = slopes[0][i] * d[0][i] + slopes[1][i] * d[1][i];
             within |= u64::from(offset[i] < 0.0);
         }
-        let mut reach = [f64::INFINITY; WIDTH];
+        let mut reach = [f64::INFINITY; RAYS];
         if within > 0 {
             let mut end = *t;
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 end[i] += ahead[i];
             }
             let (log, _) = self.radius::<FUSED>(&block.at::<FUSED>(&end));
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 let chord = (exp::<FUSED>(log[i]) - radius[i]) / ahead[i];
                 rise[i] = if offset[i] < 0.0 { -chord } else { rise[i] };
                 reach[i] = if offset[i] < 0.0 { ahead[i] } else { reach[i] };
             }
         }
-        let mut distance = [0.0; WIDTH];
-        for i in 0..WIDTH {
+        let mut distance = [0.0; RAYS];
+        for i in 0..RAYS {
             distance[i] = offset[i].abs();
         }
         let distance = size(&distance, 1.0);
         let height = size(&p[2], a3);
         let (whole, [across, along]) = norm::<FUSED>(&distance, &height, self.0.exponents()[0]);
-        let (mut value, mut rate) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for i in 0..WIDTH {
+        let (mut value, mut rate) = ([0.0; RAYS], [0.0; RAYS]);
+        for i in 0..RAYS {
             let g = exp::<FUSED>(whole[i]);
             value[i] = g - 1.0;
             let out = g * across[i] / distance[i];
@@ -79,6 +79,6 @@ impl Marched for Ring {
             slopes[1][i] *= out;
             slopes[2][i] = up;
         }
-        Floor { value, slopes, rate, bend: [0.0; WIDTH], reach }
+        Floor { value, slopes, rate, bend: [0.0; RAYS], reach }
     }
 }

@@ -6,10 +6,10 @@
 // loops over indices are what becomes vector instructions
 #![allow(clippy::needless_range_loop)]
 
-use super::block::{Block, Gauge, Row, gauge};
+use super::block::{Block, Gauge, RAYS, Row, gauge};
 use super::march::{Floor, Marched};
 use crate::deform::{Deformed, Taper};
-use crate::numeric::lanes::{Lane, WIDTH};
+use crate::numeric::lanes::Lane;
 use crate::shape::{Implicit, Superellipsoid};
 
 /// A superellipsoid whose sections grow with height.
@@ -37,17 +37,17 @@ impl Marched for Tapered {
     fn floor<const FUSED: bool>(&self, block: &Block, t: &Row, _ahead: &Row) -> Floor {
         let d = &block.directions;
         let p = block.at::<FUSED>(t);
-        let (mut u, mut factors) = (p, [[0.0; WIDTH]; 2]);
+        let (mut u, mut factors) = (p, [[0.0; RAYS]; 2]);
         for k in 0..2 {
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 factors[k][i] = self.slopes[k].times_plus::<FUSED>(p[2][i], 1.0);
                 u[k][i] = p[k][i] / factors[k][i];
             }
         }
         let Gauge { mut value, mut slopes } = gauge::<FUSED>(&u, self.axes, self.exponents);
-        let (mut rate, mut bend) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let (mut rate, mut bend) = ([0.0; RAYS], [0.0; RAYS]);
         for k in 0..2 {
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 let (f, widens) = (factors[k][i], self.slopes[k] * d[2][i]);
                 let least = f.least(f + widens * (block.far[i] - t[i]));
                 let g = slopes[k][i];
@@ -57,10 +57,10 @@ impl Marched for Tapered {
                 slopes[2][i] -= self.slopes[k] * u[k][i] * slopes[k][i];
             }
         }
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             rate[i] = slopes[0][i] * d[0][i] + slopes[1][i] * d[1][i] + slopes[2][i] * d[2][i];
             value[i] -= 1.0;
         }
-        Floor { value, slopes, rate, bend, reach: [f64::INFINITY; WIDTH] }
+        Floor { value, slopes, rate, bend, reach: [f64::INFINITY; RAYS] }
     }
 }

@@ -5,15 +5,15 @@
 
 use super::Seen;
 use super::bent::Bent;
-use super::block::{Block, Hits, Solid};
-use super::bundle::{Boxed, Bundle, Column};
+use super::block::{Block, Hits, RAYS, Solid};
+use super::bundle::{Bundle, Window};
 use super::convex::{Approach, Convex};
 use super::march::March;
 use super::ring::Ring;
 use super::tapered::Tapered;
 use super::twisted::Twisted;
 use crate::measure::first_hit;
-use crate::numeric::lanes::{Job, Lane, WIDTH, dispatch};
+use crate::numeric::lanes::{Job, Lane, dispatch};
 use crate::scene::Board;
 use crate::shape::{Implicit, Posed, Ray};
 use crate::surface::Surface;
@@ -43,7 +43,10 @@ pub(super) struct Target {
     to_optical: [[f64; 3]; 3],
     /// Where the rays start, in its frame.
     eye: [f64; 3],
-    boxed: Boxed,
+    /// No point of it is nearer to there.
+    pub(super) nearest: f64,
+    /// Where it is seen.
+    window: Window,
 }
 
 impl Target {
@@ -82,6 +85,11 @@ impl Target {
         };
         let eye = Point::from(camera.translation.vector);
         let to_optical = camera.inverse() * pose;
+        let middle = (to_optical * nalgebra::center(low, high)).coords;
+        let corners: [_; 8] = std::array::from_fn(|corner| {
+            let ends = std::array::from_fn(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] });
+            (to_optical * Point::from(ends)).into()
+        });
         Self {
             label,
             kind,
@@ -89,42 +97,31 @@ impl Target {
             turn: rows(pose.rotation),
             to_optical: rows(to_optical.rotation),
             eye: pose.inverse_transform_point(&eye).into(),
-            boxed: Boxed {
-                middle: (to_optical * nalgebra::center(low, high)).into(),
-                halves: std::array::from_fn(|k| {
-                    (to_optical * Vector::ith(k, 0.5 * (high[k] - low[k]))).into()
-                }),
-            },
+            nearest: middle.norm() - 0.5 * (high - low).norm(),
+            window: Window::around(&corners),
         }
     }
 
-    /// False where the box around it is outside of the bundle.
+    /// False where no ray of the bundle passes near it.
     pub(super) fn is_near(&self, bundle: &Bundle) -> bool {
-        bundle.may_meet(&self.boxed)
+        bundle.may_meet(&self.window)
     }
 
-    /// No point of it is nearer to where the rays start.
-    pub(super) fn nearest(&self) -> f64 {
-        let Boxed { middle, halves } = self.boxed;
-        Vector::from(middle).norm()
-            - halves.map(|h| Vector::from(h).norm_squared()).iter().sum::<f64>().sqrt()
-    }
-
-    /// Rays that meet it nearer than `nearest` see it from now on, and that is the distance.
-    pub(super) fn meet(&self, bundle: &Bundle, nearest: &mut Column, seen: &mut Seen) {
+    /// Rays that meet it before what they have seen see it from now on.
+    pub(super) fn meet(&self, bundle: &Bundle, seen: &mut Seen) {
         match &self.kind {
-            Kind::Cuboid(solid) => self.meet_as(*solid, bundle, nearest, seen),
-            Kind::Convex(solid) => self.meet_as(Approach::new(solid), bundle, nearest, seen),
-            Kind::Ring(solid) => self.meet_as(March(*solid), bundle, nearest, seen),
-            Kind::Bent(solid) => self.meet_as(March(*solid), bundle, nearest, seen),
-            Kind::Twisted(solid) => self.meet_as(March(*solid), bundle, nearest, seen),
-            Kind::Tapered(solid) => self.meet_as(March(*solid), bundle, nearest, seen),
-            Kind::Other(solid) => self.meet_as(*solid, bundle, nearest, seen),
+            Kind::Cuboid(solid) => self.meet_as(*solid, bundle, seen),
+            Kind::Convex(solid) => self.meet_as(Approach::new(solid), bundle, seen),
+            Kind::Ring(solid) => self.meet_as(March(*solid), bundle, seen),
+            Kind::Bent(solid) => self.meet_as(March(*solid), bundle, seen),
+            Kind::Twisted(solid) => self.meet_as(March(*solid), bundle, seen),
+            Kind::Tapered(solid) => self.meet_as(March(*solid), bundle, seen),
+            Kind::Other(solid) => self.meet_as(*solid, bundle, seen),
         }
     }
 
-    fn meet_as(&self, solid: impl Solid, bundle: &Bundle, nearest: &mut Column, seen: &mut Seen) {
-        dispatch(Meet { solid, target: self, bundle, nearest, seen });
+    fn meet_as(&self, solid: impl Solid, bundle: &Bundle, seen: &mut Seen) {
+        dispatch(Meet { solid, target: self, bundle, seen });
     }
 }
 
@@ -132,7 +129,6 @@ struct Meet<'a, S> {
     solid: S,
     target: &'a Target,
     bundle: &'a Bundle,
-    nearest: &'a mut Column,
     seen: &'a mut Seen,
 }
 
@@ -141,23 +137,21 @@ impl<S: Solid> Job for Meet<'_, S> {
     fn run<const FUSED: bool>(mut self) {
         let Target { turn, eye, bounds, to_optical, label, .. } = self.target;
         let rays = &self.bundle.directions;
-        let Seen { incidence, label: labels, normal: [nx, ny, nz], .. } = self.seen;
+        let Seen { depth: nearest, label: labels, normal: [nx, ny, nz] } = self.seen;
         // whole blocks, so that no index has to be checked
-        let [xs, ys, zs] = rays.each_ref().map(|column| column.as_chunks::<WIDTH>().0);
-        let all = self.nearest.as_chunks_mut::<WIDTH>().0.iter_mut();
+        let [xs, ys, zs] = rays.each_ref().map(|column| column.as_chunks::<RAYS>().0);
+        let all = nearest.as_chunks_mut::<RAYS>().0.iter_mut();
         let all = all.zip(xs.iter().zip(ys).zip(zs));
-        let normals = nx.as_chunks_mut::<WIDTH>().0.iter_mut();
-        let normals = normals.zip(ny.as_chunks_mut::<WIDTH>().0).zip(nz.as_chunks_mut::<WIDTH>().0);
-        let marks = incidence.as_chunks_mut::<WIDTH>().0.iter_mut();
-        let marks = marks.zip(labels.as_chunks_mut::<WIDTH>().0);
-        let blocks = all.zip(normals.zip(marks)).take(self.bundle.count.div_ceil(WIDTH));
-        for ((nearest, ((xs, ys), zs)), (((nx, ny), nz), (incidence, labels))) in blocks {
+        let normals = nx.as_chunks_mut::<RAYS>().0.iter_mut();
+        let normals = normals.zip(ny.as_chunks_mut::<RAYS>().0).zip(nz.as_chunks_mut::<RAYS>().0);
+        let blocks = all.zip(normals.zip(labels.as_chunks_mut::<RAYS>().0));
+        for ((nearest, ((xs, ys), zs)), (((nx, ny), nz), labels)) in blocks {
             // into the solid's frame, and what of the rays is in its box
             let mut block = Block::from(*eye);
-            (block.near, block.far) = ([0.0; WIDTH], *nearest);
+            (block.near, block.far) = ([0.0; RAYS], *nearest);
             for k in 0..3 {
                 let [a, b] = [bounds[0][k] - eye[k], bounds[1][k] - eye[k]];
-                for i in 0..WIDTH {
+                for i in 0..RAYS {
                     let sum = xs[i].times_plus::<FUSED>(turn[0][k], ys[i] * turn[1][k]);
                     let d = zs[i].times_plus::<FUSED>(turn[2][k], sum);
                     block.directions[k][i] = d;
@@ -170,16 +164,22 @@ impl<S: Solid> Job for Meet<'_, S> {
                 }
             }
             let mut any = 0;
-            for i in 0..WIDTH {
+            for i in 0..RAYS {
                 any |= u64::from(block.near[i] <= block.far[i]);
             }
             if any == 0 {
                 continue;
             }
-            let Hits { distance, normal: [xs, ys, zs] } = self.solid.hits::<FUSED>(&block);
-            let d = &block.directions;
-            for i in 0..WIDTH {
-                let closer = distance[i] < nearest[i];
+            let Hits { depth, normal: [xs, ys, zs] } = self.solid.hits::<FUSED>(&block);
+            let mut any = 0;
+            for i in 0..RAYS {
+                any |= u64::from(depth[i] < nearest[i]);
+            }
+            if any == 0 {
+                continue;
+            }
+            for i in 0..RAYS {
+                let closer = depth[i] < nearest[i];
                 // scaled first, as squares may overflow
                 let largest = xs[i].abs().most(ys[i].abs()).most(zs[i].abs());
                 let scale = 1.0 / largest.most(f64::TINY);
@@ -190,15 +190,13 @@ impl<S: Solid> Job for Meet<'_, S> {
                     let sum = x.times_plus::<FUSED>(row[0], y * row[1]);
                     z.times_plus::<FUSED>(row[2], sum) as f32
                 };
-                let along = (x * d[0][i] + y * d[1][i] + z * d[2][i]).abs() as f32;
                 let [x, y, z] =
                     [turned(&to_optical[0]), turned(&to_optical[1]), turned(&to_optical[2])];
                 nx[i] = if closer { x } else { nx[i] };
                 ny[i] = if closer { y } else { ny[i] };
                 nz[i] = if closer { z } else { nz[i] };
-                incidence[i] = if closer { along } else { incidence[i] };
                 labels[i] = if closer { *label } else { labels[i] };
-                nearest[i] = if closer { distance[i] } else { nearest[i] };
+                nearest[i] = if closer { depth[i] } else { nearest[i] };
             }
         }
     }
@@ -215,7 +213,7 @@ impl Solid for Cuboid {
     fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits {
         let mut hits = Hits::NONE;
         let p = block.at::<FUSED>(&block.near);
-        for i in 0..WIDTH {
+        for i in 0..RAYS {
             let shares = [0, 1, 2].map(|k| p[k][i].abs() / self.half[k]);
             let largest = shares[0].most(shares[1]).most(shares[2]);
             for k in 0..3 {
@@ -223,7 +221,7 @@ impl Solid for Cuboid {
                 hits.normal[k][i] = face.copysign(p[k][i]);
             }
             let met = block.near[i] <= block.far[i];
-            hits.distance[i] = if met { block.near[i] } else { f64::INFINITY };
+            hits.depth[i] = if met { block.near[i] } else { f64::INFINITY };
         }
         hits
     }
@@ -237,12 +235,15 @@ impl Solid for OneByOne {
     #[inline(always)]
     fn hits<const FUSED: bool>(&mut self, block: &Block) -> Hits {
         let mut hits = Hits::NONE;
-        for i in 0..WIDTH {
-            let direction = Direction::new_unchecked(Vector::from(block.directions.map(|d| d[i])));
+        for i in 0..RAYS {
+            let along = Vector::from(block.directions.map(|d| d[i]));
+            let (direction, length) = Direction::new_and_get(along);
             let ray = Ray { origin: Point::from(block.origin), direction };
             // the end of the box may be rounded down
-            if let Some(hit) = first_hit(&self.0, &ray, block.far[i] * (1.0 + 1e-12)) {
-                hits.distance[i] = hit.distance;
+            let far = block.far[i] * (1.0 + 1e-12);
+            let met = (block.near[i] <= far).then(|| first_hit(&self.0, &ray, far * length));
+            if let Some(hit) = met.flatten() {
+                hits.depth[i] = hit.distance / length;
                 for k in 0..3 {
                     hits.normal[k][i] = hit.normal[k];
                 }

@@ -8,10 +8,10 @@
 
 use std::f64::consts::PI;
 
-use super::block::{Block, Gauge, Row, gauge};
+use super::block::{Block, Gauge, RAYS, Row, gauge};
 use super::march::{Floor, Marched};
 use crate::deform::{Deformed, Twist};
-use crate::numeric::lanes::{Lane, WIDTH, sin_cos};
+use crate::numeric::lanes::{Lane, sin_cos};
 use crate::shape::{Implicit, Superellipsoid};
 
 /// A superellipsoid whose sections turn.
@@ -43,15 +43,15 @@ impl Marched for Twisted {
     fn floor<const FUSED: bool>(&self, block: &Block, t: &Row, _ahead: &Row) -> Floor {
         let d = &block.directions;
         let p = block.at::<FUSED>(t);
-        let (mut u, mut sin, mut cos) = (p, [0.0; WIDTH], [0.0; WIDTH]);
-        for i in 0..WIDTH {
+        let (mut u, mut sin, mut cos) = (p, [0.0; RAYS], [0.0; RAYS]);
+        for i in 0..RAYS {
             (sin[i], cos[i]) = sin_cos::<FUSED>(self.rate.times_plus::<FUSED>(p[2][i], self.angle));
             u[0][i] = cos[i] * p[0][i] + sin[i] * p[1][i];
             u[1][i] = cos[i] * p[1][i] - sin[i] * p[0][i];
         }
         let Gauge { mut value, mut slopes } = gauge::<FUSED>(&u, self.axes, self.exponents);
-        let (mut rate, mut bend) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for i in 0..WIDTH {
+        let (mut rate, mut bend) = ([0.0; RAYS], [0.0; RAYS]);
+        for i in 0..RAYS {
             let [gx, gy] = [slopes[0][i], slopes[1][i]];
             // turned with the section
             slopes[0][i] = cos[i] * gx - sin[i] * gy;
@@ -67,6 +67,6 @@ impl Marched for Twisted {
             bend[i] = size * turn * (2.0 * aside + turn * farthest);
             value[i] -= 1.0;
         }
-        Floor { value, slopes, rate, bend, reach: [f64::INFINITY; WIDTH] }
+        Floor { value, slopes, rate, bend, reach: [f64::INFINITY; RAYS] }
     }
 }
