@@ -1,5 +1,6 @@
 //! A pinhole camera with the usual radial and tangential lens distortion.
 
+use crate::numeric::lanes::{Job, dispatch};
 use crate::{Direction, Point, Vector};
 
 /// Numbers from which no camera can be made.
@@ -21,6 +22,22 @@ pub struct Camera {
     focal: [f64; 2],
     centre: [f64; 2],
     distortion: [f64; 8],
+}
+
+/// Image coordinates of pixel coordinates along one axis, without distortion.
+struct Scaled<'a> {
+    column: &'a mut [f64],
+    centre: f64,
+    inverse: f64,
+}
+
+impl Job for Scaled<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        for place in self.column {
+            *place = (*place - self.centre) * self.inverse;
+        }
+    }
 }
 
 impl Camera {
@@ -105,17 +122,17 @@ impl Camera {
         Vector::new(x, y, 1.0)
     }
 
-    /// [`Camera::unproject`] of many pixels at once: x and y of each.
-    pub(crate) fn unproject_all(&self, [u, v]: [&[f64]; 2], [x, y]: [&mut [f64]; 2]) {
-        let straight = self.distortion == [0.0; 8];
-        let to = x.iter_mut().zip(y);
-        for ((x, y), (u, v)) in to.zip(u.iter().zip(v)) {
-            (*x, *y) = if straight {
-                ((u - self.centre[0]) / self.focal[0], (v - self.centre[1]) / self.focal[1])
-            } else {
-                let along = self.unproject(*u, *v);
-                (along.x, along.y)
-            };
+    /// [`Camera::unproject`] of many pixels at once: x and y in place of u and v.
+    pub(crate) fn unproject_all(&self, u: &mut [f64], v: &mut [f64]) {
+        if self.distortion == [0.0; 8] {
+            for (column, k) in [u, v].into_iter().zip(0..) {
+                dispatch(Scaled { column, centre: self.centre[k], inverse: 1.0 / self.focal[k] });
+            }
+            return;
+        }
+        for (u, v) in u.iter_mut().zip(v) {
+            let along = self.unproject(*u, *v);
+            (*u, *v) = (along.x, along.y);
         }
     }
 

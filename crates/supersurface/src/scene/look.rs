@@ -1,13 +1,18 @@
 //! What a depth camera sees of a scene: a ray a pixel against the bodies and the table's top.
 
+// loops over indices are what becomes vector instructions
+#![allow(clippy::needless_range_loop)]
+
 use crate::camera::{Camera, DepthImage};
+use crate::numeric::lanes::{Job, dispatch};
 use crate::numeric::random::{Stream, normals};
-use crate::scene::rays::{MOST, Rays, Seen};
-use crate::scene::tiles::{ROWS, Run, Tiles};
+use crate::scene::rays::{Along, MOST, Rays, Seen};
+use crate::scene::tiles::{ROWS, RUN, Run, Tiles};
 use crate::scene::{DepthNoise, Scene};
 use crate::{Point, Pose, Vector};
 use nalgebra::UnitQuaternion;
 use std::iter::repeat_with;
+use std::ops::Range;
 
 /// A jump of depth between neighbours, relative to the depth, that counts as an edge.
 const JUMP: f32 = 0.015;
@@ -43,8 +48,16 @@ pub fn look(
     noise: &DepthNoise,
     seed: u64,
 ) -> Look {
-    let depth = DepthImage::empty(camera);
-    let mut look = Look { depth, labels: Vec::new(), seen: Vec::new(), normals: Vec::new() };
+    let size = camera.size();
+    let pixels = size[0] * size[1];
+    // zeros that the system gives are written once, by the first frame
+    let mut look = Look {
+        depth: DepthImage::new(size, vec![0.0; pixels])
+            .unwrap_or_else(|| DepthImage::empty(camera)),
+        labels: vec![0; pixels],
+        seen: vec![0; pixels],
+        normals: vec![[0.0; 3]; pixels],
+    };
     look.again(scene, camera, camera_pose, noise, seed);
     look
 }
@@ -75,32 +88,20 @@ impl Look {
         let incidences = incidence.chunks_mut(band).map(Some).chain(repeat_with(|| None));
         let bands = self.depth.depth_mut().chunks_mut(band).zip(self.normals.chunks_mut(band));
         let bands = bands.zip(self.labels.chunks_mut(band).zip(self.seen.chunks_mut(band)));
-        each(bands.zip(incidences).collect(), |band, (images, mut incidence)| {
-            let ((depth, normals), (labels, seen)) = images;
-            let mut found = Seen::nothing();
+        let bands = bands.zip(incidences).map(|(((depth, normals), (labels, seen)), incidence)| {
+            Band { depth, normals, labels, seen, incidence }
+        });
+        each(bands.collect(), |band, mut images| {
+            let (mut along, mut found) = (Along::ahead(), Seen::nothing());
             for tile in tiles.band(band) {
-                let along = tiles.along(tile, camera, noise.lateral, seed);
+                tiles.aim(tile, camera, noise.lateral, seed, &mut along);
                 rays.see(&along, &mut found);
-                for Run { place, pixel, length } in tiles.runs(tile) {
-                    let (from, start) = (place..place + length, pixel - band * ROWS * width);
-                    let to = start..start + length;
-                    for (to, from) in depth[to.clone()].iter_mut().zip(&found.depth[from.clone()]) {
-                        *to = if from.is_finite() { *from as f32 } else { f32::NAN };
-                    }
-                    labels[to.clone()].copy_from_slice(&found.label[from.clone()]);
-                    seen[to.clone()].copy_from_slice(&found.label[from.clone()]);
-                    for (normal, i) in normals[to].iter_mut().zip(from) {
-                        *normal = [0, 1, 2].map(|k| found.normal[k][i]);
-                    }
-                }
-                if let Some(incidence) = &mut incidence {
-                    let cosines = found.incidence(&along);
-                    for Run { place, pixel, length } in tiles.runs(tile) {
-                        let start = pixel - band * ROWS * width;
-                        incidence[start..start + length]
-                            .copy_from_slice(&cosines[place..place + length]);
-                    }
-                }
+                let cosines = images.incidence.is_some().then(|| found.incidence(&along));
+                let runs = tiles.runs(tile).map(|Run { place, pixel, length }| {
+                    let start = pixel - band * ROWS * width;
+                    (place / RUN, start..start + length)
+                });
+                dispatch(Put { images: &mut images, runs, found: &found, cosines: &cosines });
             }
         });
         if !exact {
@@ -127,6 +128,58 @@ impl Look {
                 }
             }
         });
+    }
+}
+
+/// The images' rows of a band of tiles.
+struct Band<'a> {
+    depth: &'a mut [f32],
+    normals: &'a mut [[f32; 3]],
+    labels: &'a mut [u32],
+    seen: &'a mut [u32],
+    incidence: Option<&'a mut [f32]>,
+}
+
+/// Puts what a tile's rays met into the images.
+struct Put<'a, 'b, R> {
+    images: &'a mut Band<'b>,
+    /// Runs with the place of each in the images.
+    runs: R,
+    found: &'a Seen,
+    cosines: &'a Option<[f32; MOST]>,
+}
+
+impl<R: Iterator<Item = (usize, Range<usize>)>> Job for Put<'_, '_, R> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Band { depth, normals, labels, seen, incidence } = self.images;
+        let Seen { depth: depths, label, normal: [xs, ys, zs] } = self.found;
+        let depths = depths.as_chunks::<RUN>().0;
+        let label = label.as_chunks::<RUN>().0;
+        let [xs, ys, zs] = [xs, ys, zs].map(|column| column.as_chunks::<RUN>().0);
+        for (k, to) in self.runs {
+            let reading = |z: f64| if z < f64::INFINITY { z as f32 } else { f32::NAN };
+            put(&mut depth[to.clone()], |i| reading(depths[k][i]));
+            put(&mut normals[to.clone()], |i| [xs[k][i], ys[k][i], zs[k][i]]);
+            put(&mut labels[to.clone()], |i| label[k][i]);
+            put(&mut seen[to.clone()], |i| label[k][i]);
+            if let (Some(incidence), Some(cosines)) = (incidence.as_mut(), self.cosines) {
+                put(&mut incidence[to], |i| cosines.as_chunks::<RUN>().0[k][i]);
+            }
+        }
+    }
+}
+
+/// Fills a run, at once where it is whole. Straight from the rays: a copy on the way would have to wait for its parts.
+#[inline(always)]
+fn put<T>(to: &mut [T], from: impl Fn(usize) -> T) {
+    match to.first_chunk_mut::<RUN>() {
+        Some(whole) => {
+            for i in 0..RUN {
+                whole[i] = from(i);
+            }
+        }
+        None => to.iter_mut().zip(0..RUN).for_each(|(to, i)| *to = from(i)),
     }
 }
 
@@ -177,8 +230,8 @@ pub fn visibility(scene: &Scene, camera: &Camera, camera_pose: &Pose) -> Vec<f64
     let tiles = Tiles::of(camera);
     // pixels in which each body is seen, and in which it would be
     let counts = gather(tiles.count(), |tile| {
-        let along = tiles.along(tile, camera, 0.0, 0);
-        let mut seen = Seen::nothing();
+        let (mut along, mut seen) = (Along::ahead(), Seen::nothing());
+        tiles.aim(tile, camera, 0.0, 0, &mut along);
         rays.see(&along, &mut seen);
         let count = |(met, label): (&[bool; MOST], u32)| -> [u32; 2] {
             let mut counts = [0, 0];

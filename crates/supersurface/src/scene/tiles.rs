@@ -66,27 +66,33 @@ impl Tiles {
         })
     }
 
-    /// The rays through the middles of a tile's pixels, off by normal numbers of a deviation in pixels; for places outside
-    /// of the image, rays of its last column or row.
-    pub(super) fn along(&self, tile: usize, camera: &Camera, deviation: f64, seed: u64) -> Along {
-        let (mut across, mut down) = ([0.0; MOST], [0.0; MOST]);
+    /// Aims at the middles of a tile's pixels, off by normal numbers of a deviation in pixels; for places outside of the
+    /// image, at its last column or row.
+    pub(super) fn aim(
+        &self,
+        tile: usize,
+        camera: &Camera,
+        deviation: f64,
+        seed: u64,
+        along: &mut Along,
+    ) {
+        let Along { x, y } = along;
+        (*x, *y) = ([0.0; MOST], [0.0; MOST]);
         if deviation != 0.0 {
             for Run { place, pixel, length } in self.runs(tile) {
-                normals(seed, pixel as u64, 0, &mut across[place..place + length]);
-                normals(seed, pixel as u64, 2, &mut down[place..place + length]);
+                normals(seed, pixel as u64, 0, &mut x[place..place + length]);
+                normals(seed, pixel as u64, 2, &mut y[place..place + length]);
             }
         }
         let last = self.size.map(|n| n.saturating_sub(1) as f64);
-        let rows = across.as_chunks_mut::<RUN>().0.iter_mut().zip(down.as_chunks_mut::<RUN>().0);
-        for (run, (across, down)) in rows.enumerate() {
+        let runs = x.as_chunks_mut::<RUN>().0.iter_mut().zip(y.as_chunks_mut::<RUN>().0);
+        for (run, (x, y)) in runs.enumerate() {
             let [u, v] = self.corner(tile, run).map(|k| k as f64);
             for k in 0..RUN {
-                across[k] = (u + k as f64).min(last[0]) + deviation * across[k];
-                down[k] = v.min(last[1]) + deviation * down[k];
+                x[k] = (u + k as f64).min(last[0]) + deviation * x[k];
+                y[k] = v.min(last[1]) + deviation * y[k];
             }
         }
-        let mut along = Along { x: [0.0; MOST], y: [0.0; MOST] };
-        camera.unproject_all([&across, &down], [&mut along.x, &mut along.y]);
-        along
+        camera.unproject_all(x, y);
     }
 }

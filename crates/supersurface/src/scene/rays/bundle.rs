@@ -21,6 +21,13 @@ pub(in crate::scene) struct Along {
     pub(in crate::scene) y: Column,
 }
 
+impl Along {
+    /// The optical axis.
+    pub(in crate::scene) const fn ahead() -> Self {
+        Self { x: [0.0; MOST], y: [0.0; MOST] }
+    }
+}
+
 /// The rays in the world.
 pub(super) struct Bundle {
     /// How points move as depth grows by a metre.
