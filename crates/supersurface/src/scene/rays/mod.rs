@@ -1,6 +1,6 @@
 //! What the rays of a camera meet in a scene: exact surfaces, not meshes.
 //!
-//! Rays come in bundles of neighbours. A solid whose box is outside of the pyramid around a bundle is left out for all of
+//! Rays come in bundles of neighbours. A solid whose window at depth 1 is beside that of a bundle is left out for all of
 //! them; the others are followed in blocks through the box: to convex solids by tangent planes
 //! ([`convex`]), to others by certified steps ([`march`]).
 
