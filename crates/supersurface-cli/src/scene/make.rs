@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use supersurface::camera::Camera;
 use supersurface::grasp::Gripper;
-use supersurface::scene::{Layout, Recipe, Scene, arrange, draw, look, turntable, visibility};
+use supersurface::scene::{Layout, Look, Recipe, Scene, arrange, draw, turntable, visibility};
 use supersurface_io::{
     SceneCamera, SceneExtras, read_gripper, read_things, write_scene, write_view,
 };
@@ -106,10 +106,11 @@ pub(super) fn make(
     let noise = args.noise.model();
     let (mut cameras, mut shares) = (Vec::new(), vec![0f64; scene.bodies.len()]);
     let mut grasps = given.gripper.as_ref().map(|gripper| Grasps::new(gripper, &scene));
+    let mut seen = Look::blank(&camera);
     for (k, pose) in turntable(&scene, &camera, args.views.into()).into_iter().enumerate() {
         let name = format!("view_{k:03}");
         say("look", format!("looking: view {} of {}", k + 1, args.views));
-        let seen = look(&scene, &camera, &pose, &noise, seed.wrapping_add(k as u64));
+        seen.again(&scene, &camera, &pose, &noise, seed.wrapping_add(k as u64));
         let place = output.join(&name);
         folder(&place)?;
         write_view(&place, &seen, &camera, &pose).map_err(Failure::output)?;

@@ -48,21 +48,27 @@ pub fn look(
     noise: &DepthNoise,
     seed: u64,
 ) -> Look {
-    let size = camera.size();
-    let pixels = size[0] * size[1];
-    // zeros that the system gives are written once, by the first frame
-    let mut look = Look {
-        depth: DepthImage::new(size, vec![0.0; pixels])
-            .unwrap_or_else(|| DepthImage::empty(camera)),
-        labels: vec![0; pixels],
-        seen: vec![0; pixels],
-        normals: vec![[0.0; 3]; pixels],
-    };
+    let mut look = Look::blank(camera);
     look.again(scene, camera, camera_pose, noise, seed);
     look
 }
 
 impl Look {
+    /// The images of a camera before its first frame, all zero.
+    pub fn blank(camera: &Camera) -> Self {
+        let size = camera.size();
+        let pixels = size[0] * size[1];
+        // zeros that the system gives are written once, by the first frame
+        let depth =
+            DepthImage::new(size, vec![0.0; pixels]).unwrap_or_else(|| DepthImage::empty(camera));
+        Self {
+            depth,
+            labels: vec![0; pixels],
+            seen: vec![0; pixels],
+            normals: vec![[0.0; 3]; pixels],
+        }
+    }
+
     /// What [`look`] returns, written over this one: the next frame of a camera, in the memory of the one before.
     pub fn again(
         &mut self,
