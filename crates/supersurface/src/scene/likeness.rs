@@ -121,11 +121,12 @@ pub(super) fn hammer(length: f64, density: f64) -> Result<Assembly<Surface>, Inv
     let thick = 0.06 * length;
     let handle = Superellipsoid::new([0.7 * thick, thick, half], [CRISP, 0.8])?;
     let head = Superellipsoid::new([thick, thick, 0.22 * length], [CRISP, 0.6])?;
-    // its z axis lies along x of the whole
-    let across = UnitQuaternion::from_axis_angle(&Vector::y_axis(), 0.5 * PI);
-    let at = Vector::z() * (half - thick);
+    // it lies: the handle's z axis along x of the whole, the head's along y
+    let along = UnitQuaternion::from_axis_angle(&Vector::y_axis(), 0.5 * PI);
+    let across = UnitQuaternion::from_axis_angle(&Vector::x_axis(), -0.5 * PI);
+    let at = Vector::x() * (half - thick);
     fixed(vec![
-        upright("handle", Surface::Superellipsoid(handle), 0.0, density)?,
+        part("handle", Surface::Superellipsoid(handle), Vector::zeros(), along, density)?,
         part("head", Surface::Superellipsoid(head), at, across, HEAD * density)?,
     ])
 }
