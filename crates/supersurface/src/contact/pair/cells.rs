@@ -199,7 +199,7 @@ fn search<T: Lane + Precision, const N: usize>(
             let small = cell.half <= SMALLEST && bound >= best - tolerance;
             if block.values.value[i].wide() < best - T::SLACK || hopeful && small {
                 let middle = Face::ALL[cell.face()].direction(cell);
-                let other = settle(pair, &[middle, pair.to_b(&middle)]);
+                let other = settle(pair, &[middle, pair.to_b(&middle)], best + ALIKE);
                 minima.push((other.expansion.value, other.normal[0]));
                 if other.expansion.value < best {
                     found.minimum = other;

@@ -12,10 +12,10 @@ use super::gilbert::gilbert;
 /// The first limit of the powers.
 const FIRST: f64 = 3.0;
 
-/// The minimum below a start, by rounder bodies if need be.
+/// The minimum below a start, by rounder bodies if need be, or some place above it, if it is plainly no less than `worth`.
 #[inline]
-pub(super) fn settle(pair: &Difference, start: &[Triple; 2]) -> Minimum {
-    let direct = descend(pair, start);
+pub(super) fn settle(pair: &Difference, start: &[Triple; 2], worth: f64) -> Minimum {
+    let direct = descend(pair, start, worth);
     if direct.settled { direct } else { otherwise(pair, &direct) }
 }
 
@@ -39,7 +39,7 @@ fn continued(pair: &Difference, start: &[Triple; 2]) -> Minimum {
     let sharpest = pair.sharpness();
     let mut limit = FIRST;
     let mut rounded = pair.rounded(limit);
-    let mut here = descend(&rounded, start);
+    let mut here = descend(&rounded, start, f64::INFINITY);
     let mut before: Option<(f64, Triple)> = None;
     while limit < sharpest {
         let next_limit = (2.0 * limit).min(sharpest);
@@ -57,7 +57,7 @@ fn continued(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         }
         before = Some((limit, n[0]));
         (limit, rounded) = (next_limit, next);
-        here = descend(&rounded, &guess);
+        here = descend(&rounded, &guess, f64::INFINITY);
     }
     here
 }

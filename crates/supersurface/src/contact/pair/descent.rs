@@ -19,6 +19,10 @@ const FACING: f64 = 1e-10;
 /// Steps, relative to the tangents, that bend a face's coordinates by no more than rounding of the last step.
 const SMALL: f64 = 1e-3;
 
+/// Newton steps shorter than this, in radians, tell what is left to gain, to a factor.
+const NEAR: f64 = 0.1;
+const PLAINLY: f64 = 4.0;
+
 /// Curvature below which a minimum is a valley.
 const FLAT: f64 = 1e-9;
 
@@ -67,30 +71,31 @@ struct Plan {
     estimate: f64,
 }
 
-/// The descent from `start`, a direction in both frames.
+/// The descent from `start`, a direction in both frames; it ends early where it plainly leads to no less than `worth`.
 #[inline]
-pub(super) fn descend(pair: &Difference, start: &[Triple; 2]) -> Minimum {
+pub(super) fn descend(pair: &Difference, start: &[Triple; 2], worth: f64) -> Minimum {
     let mut here =
         Minimum { normal: *start, expansion: Expansion::NONE, settled: false, slack: 0.0 };
-    dispatch(Descent { pair, here: &mut here });
+    dispatch(Descent { pair, worth, here: &mut here });
     here
 }
 
 struct Descent<'a> {
     pair: &'a Difference,
+    worth: f64,
     here: &'a mut Minimum,
 }
 
 impl Job for Descent<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        self.here.settled = run::<FUSED>(self.pair, self.here);
+        self.here.settled = run::<FUSED>(self.pair, self.worth, self.here);
     }
 }
 
 /// Moves to the minimum; false where it gives up.
 #[inline(always)]
-fn run<const FUSED: bool>(pair: &Difference, here: &mut Minimum) -> bool {
+fn run<const FUSED: bool>(pair: &Difference, worth: f64, here: &mut Minimum) -> bool {
     let mut trial = here.normal;
     let mut chart = Chart::NONE;
     let mut evaluations = 0;
@@ -119,6 +124,11 @@ fn run<const FUSED: bool>(pair: &Difference, here: &mut Minimum) -> bool {
             let full = !majorised && factor == 1.0 && plan.estimate.is_finite();
             plan = self::plan::<FUSED>(&here.expansion, &chart);
             if plan.estimate < 1e-15 && slope < FACING {
+                return true;
+            }
+            let near = full && chart.length(&plan.newton) < NEAR;
+            if near && here.expansion.value - PLAINLY * plan.estimate > worth {
+                here.slack = plan.estimate;
                 return true;
             }
             // two steps that changed nothing

@@ -142,18 +142,10 @@ fn shares<const FUSED: bool, T: Lane, const N: usize>(
     q: &[[T; N]; 2],
     r: &[[T; N]; 2],
 ) -> Shares<T, N> {
-    let mut logs = *u;
-    for k in 0..3 {
-        for i in 0..N {
-            logs[k][i] = u[k][i].ln::<FUSED>();
-        }
-    }
-    let (norm, inner) = norm_of_logs::<FUSED, T, N>(&logs[0], &logs[1], &q[1], &r[1]);
-    let (mut support, outer) = norm_of_logs::<FUSED, T, N>(&norm, &logs[2], &q[0], &r[0]);
-    for i in 0..N {
-        support[i] = support[i].exp::<FUSED>();
-    }
-    Shares { support, inner, outer }
+    let log = |k: usize| lanes(|i| u[k][i].ln::<FUSED>());
+    let (norm, inner) = norm_of_logs::<FUSED, T, N>(&log(0), &log(1), &q[1], &r[1]);
+    let (log_support, outer) = norm_of_logs::<FUSED, T, N>(&norm, &log(2), &q[0], &r[0]);
+    Shares { support: lanes(|i| log_support[i].exp::<FUSED>()), inner, outer }
 }
 
 impl Difference {
@@ -279,59 +271,62 @@ impl Difference {
         &self,
         n: &[[T; N]; 3],
     ) -> Values<T, N> {
-        let zero = [T::of(0.0); N];
-        let mut found = Values { value: zero, gradient: [zero; 3] };
         let turn: [[T; 3]; 3] =
             [narrow(&self.turn[0]), narrow(&self.turn[1]), narrow(&self.turn[2])];
         let centre: [T; 3] = narrow(&self.centre);
-        for b in 0..2 {
-            let semi_axes: [T; 3] = narrow(&self.semi_axes[b]);
-            let mut local = *n;
-            if b == 1 {
-                for k in 0..3 {
-                    for i in 0..N {
-                        local[k][i] =
-                            turn[0][k] * n[0][i] + turn[1][k] * n[1][i] + turn[2][k] * n[2][i];
-                    }
-                }
-            }
-            let mut u = local;
-            for k in 0..3 {
-                for i in 0..N {
-                    u[k][i] = (semi_axes[k] * local[k][i].abs()).most(T::TINY);
-                }
-            }
-            let spread = |q: &[f64; 2]| [[T::of(q[0]); N], [T::of(q[1]); N]];
-            let (q, r) = (spread(&self.dual[b]), spread(&self.inverse_dual[b]));
-            let of = shares::<FUSED, T, N>(&u, &q, &r);
-            let mut x = local;
-            for i in 0..N {
-                let planar = of.support[i] * of.outer[0][i];
-                let along = [
-                    planar * of.inner[0][i],
-                    planar * of.inner[1][i],
-                    of.support[i] * of.outer[1][i],
-                ];
-                for k in 0..3 {
-                    x[k][i] = (semi_axes[k] * along[k] / u[k][i]).copysign(local[k][i]);
-                }
-                found.value[i] += of.support[i];
-            }
-            for k in 0..3 {
-                for i in 0..N {
-                    found.gradient[k][i] += match b {
-                        0 => x[k][i] - centre[k],
-                        _ => turn[k][0] * x[0][i] + turn[k][1] * x[1][i] + turn[k][2] * x[2][i],
-                    };
-                }
-            }
+        let seen_by_b = |k: usize| {
+            lanes(|i| turn[0][k] * n[0][i] + turn[1][k] * n[1][i] + turn[2][k] * n[2][i])
+        };
+        let (on_a, a) = self.support::<FUSED, T, N>(0, n);
+        let (on_b, b) = self.support::<FUSED, T, N>(1, &[seen_by_b(0), seen_by_b(1), seen_by_b(2)]);
+        let gradient = |k: usize| {
+            lanes(|i| {
+                let x = turn[k][0] * b[0][i] + turn[k][1] * b[1][i] + turn[k][2] * b[2][i];
+                a[k][i] - centre[k] + x
+            })
+        };
+        let along = |i: usize| n[0][i] * centre[0] + n[1][i] * centre[1] + n[2][i] * centre[2];
+        Values {
+            value: lanes(|i| on_a[i] + on_b[i] - along(i)),
+            gradient: [gradient(0), gradient(1), gradient(2)],
         }
-        for i in 0..N {
-            let along = n[0][i] * centre[0] + n[1][i] * centre[1] + n[2][i] * centre[2];
-            found.value[i] = found.value[i] - along;
-        }
-        found
     }
+
+    /// Support function and support points of a body for a block of directions of its own frame.
+    #[inline(always)]
+    fn support<const FUSED: bool, T: Lane, const N: usize>(
+        &self,
+        body: usize,
+        n: &[[T; N]; 3],
+    ) -> ([T; N], [[T; N]; 3]) {
+        let semi_axes: [T; 3] = narrow(&self.semi_axes[body]);
+        let u = |k: usize| lanes(|i| (semi_axes[k] * n[k][i].abs()).most(T::TINY));
+        let u = [u(0), u(1), u(2)];
+        let spread = |q: &[f64; 2]| [[T::of(q[0]); N], [T::of(q[1]); N]];
+        let (q, r) = (spread(&self.dual[body]), spread(&self.inverse_dual[body]));
+        let of = shares::<FUSED, T, N>(&u, &q, &r);
+        let planar: [T; N] = lanes(|i| of.support[i] * of.outer[0][i]);
+        let point = |k: usize, along: [T; N]| {
+            lanes(|i| (semi_axes[k] * along[i] / u[k][i]).copysign(n[k][i]))
+        };
+        let points = [
+            point(0, lanes(|i| planar[i] * of.inner[0][i])),
+            point(1, lanes(|i| planar[i] * of.inner[1][i])),
+            point(2, lanes(|i| of.support[i] * of.outer[1][i])),
+        ];
+        (of.support, points)
+    }
+}
+
+/// A block of numbers. Loops over one block alone become vector instructions; those over several were seen to become
+/// gathers and scatters.
+#[inline(always)]
+fn lanes<T: Lane, const N: usize>(of: impl Fn(usize) -> T) -> [T; N] {
+    let mut block = [T::of(0.0); N];
+    for i in 0..N {
+        block[i] = of(i);
+    }
+    block
 }
 
 /// Three numbers in a kernel's precision.

@@ -36,7 +36,7 @@ pub(super) fn gilbert(pair: &Difference, start: &[Triple; 2]) -> Minimum {
         let n = scaled(&nearest, -1.0 / distance);
         normal = [n, pair.to_b(&n)];
     }
-    descend(pair, &best.1)
+    descend(pair, &best.1, f64::INFINITY)
 }
 
 /// True where the origin is inside a tetrahedron: the bodies overlap.

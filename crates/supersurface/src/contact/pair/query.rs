@@ -115,7 +115,7 @@ pub fn certify(a: &Posed<Convex>, b: &Posed<Convex>, tolerance: f64) -> Contact 
 /// True where the bodies overlap or touch. Cheaper than [`pair`] for deep overlaps, which are not measured.
 pub fn intersect(a: &Posed<Convex>, b: &Posed<Convex>) -> bool {
     let pair = Difference::new(a, b);
-    let found = settle(&pair, &first_guess(&pair));
+    let found = settle(&pair, &first_guess(&pair), f64::INFINITY);
     let value = found.expansion.value;
     // a positive minimum is not yet all of them
     value >= 0.0 && {
@@ -147,7 +147,7 @@ pub(super) fn answer(
         Some(n) => [n, pair.to_b(&n)],
         None => first_guess(&pair),
     };
-    let minimum = settle(&pair, &guess);
+    let minimum = settle(&pair, &guess, f64::INFINITY);
     let mut answer = Answer { pair, minimum, least_depth: f64::NEG_INFINITY, unique: true };
     if minimum.expansion.value > 0.0 {
         let proven = start.proven.get_or_insert_default();
