@@ -135,7 +135,8 @@ struct Meet<'a, S> {
 impl<S: Solid> Job for Meet<'_, S> {
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
-        let Target { turn, eye, bounds, to_optical, label, .. } = self.target;
+        // copies: what a loop reads through a reference where a ray is closer becomes gathers
+        let Target { turn, eye, bounds, to_optical, label, .. } = *self.target;
         let rays = &self.bundle.directions;
         let Seen { depth: nearest, label: labels, normal: [nx, ny, nz] } = self.seen;
         // whole blocks, so that no index has to be checked
@@ -147,7 +148,7 @@ impl<S: Solid> Job for Meet<'_, S> {
         let blocks = all.zip(normals.zip(labels.as_chunks_mut::<RAYS>().0));
         for ((nearest, ((xs, ys), zs)), (((nx, ny), nz), labels)) in blocks {
             // into the solid's frame, and what of the rays is in its box
-            let mut block = Block::from(*eye);
+            let mut block = Block::from(eye);
             (block.near, block.far) = ([0.0; RAYS], *nearest);
             for k in 0..3 {
                 let [a, b] = [bounds[0][k] - eye[k], bounds[1][k] - eye[k]];
@@ -195,7 +196,7 @@ impl<S: Solid> Job for Meet<'_, S> {
                 nx[i] = if closer { x } else { nx[i] };
                 ny[i] = if closer { y } else { ny[i] };
                 nz[i] = if closer { z } else { nz[i] };
-                labels[i] = if closer { *label } else { labels[i] };
+                labels[i] = if closer { label } else { labels[i] };
                 nearest[i] = if closer { depth[i] } else { nearest[i] };
             }
         }
