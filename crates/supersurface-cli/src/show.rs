@@ -23,6 +23,8 @@ const OBJECTS: [Colour; 8] = [
     [23, 150, 165],
 ];
 const GREY: Colour = [150, 152, 156];
+/// What is in the way.
+const CLAY: Colour = [150, 124, 100];
 const STEEL: Colour = [70, 76, 86];
 const INK: Colour = [28, 30, 34];
 
@@ -32,9 +34,10 @@ pub(crate) fn picture(cloud: &PointCloud, report: &Report, gripper: Option<&Grip
     let shown = interest(cloud, report);
     let up = up(cloud, report, &shown);
     let from = viewpoint(cloud, &shown, &up);
-    let seen = seen(cloud, &labels, &View::towards(&shown, &up, &from));
+    let solid = solid(cloud, report);
+    let seen = seen(cloud, &labels, &solid, &View::towards(&shown, &up, &from));
     let turned = View::turned(&shown, &up, &from, -0.45, 0.2);
-    let made = made(cloud, &labels, report, gripper, &View::towards(&shown, &up, &turned));
+    let made = made(cloud, &labels, &solid, report, gripper, &View::towards(&shown, &up, &turned));
     let mut image = seen.beside(&made, 4);
     image.text(14.0, 12.0, "seen: the cloud, objects in colours", INK, 16.0);
     let grasps = gripper.map(|g| format!(" and best grasps of {}", g.name)).unwrap_or_default();
@@ -64,7 +67,7 @@ fn interest(cloud: &PointCloud, report: &Report) -> Vec<Point> {
 
 /// The table's normal, or against gravity in an optical frame, whichever way it looks along z.
 fn up(cloud: &PointCloud, report: &Report, shown: &[Point]) -> Vector {
-    if let Some(table) = report.segmentation.support {
+    if let Some(table) = report.segmentation.support() {
         return table.normal().into_inner();
     }
     let origin = cloud.viewpoint.unwrap_or_else(Point::origin);
@@ -87,16 +90,26 @@ fn viewpoint(cloud: &PointCloud, shown: &[Point], up: &Vector) -> Point {
     }
 }
 
+/// The points of obstacles.
+fn solid(cloud: &PointCloud, report: &Report) -> Vec<bool> {
+    let mut solid = vec![false; cloud.points.len()];
+    for (piece, _) in report.segmentation.obstacles() {
+        piece.points.iter().for_each(|i| solid[*i as usize] = true);
+    }
+    solid
+}
+
 fn tint(label: i32) -> Option<Colour> {
     usize::try_from(label - 1).ok().map(|k| OBJECTS[k % OBJECTS.len()])
 }
 
 /// The cloud in its own colours (or grey), objects tinted.
-fn seen(cloud: &PointCloud, labels: &[i32], view: &View) -> Image {
+fn seen(cloud: &PointCloud, labels: &[i32], solid: &[bool], view: &View) -> Image {
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
     let own = |i: usize| cloud.colours.get(i).copied().unwrap_or(GREY);
     let colour = |i: usize| match tint(labels[i]) {
         Some(c) => mix(own(i), c, 0.55),
+        None if solid[i] => mix(own(i), CLAY, 0.5),
         None => own(i),
     };
     picture.points(&cloud.points, colour, None);
@@ -107,6 +120,7 @@ fn seen(cloud: &PointCloud, labels: &[i32], view: &View) -> Image {
 fn made(
     cloud: &PointCloud,
     labels: &[i32],
+    solid: &[bool],
     report: &Report,
     gripper: Option<&Gripper>,
     view: &View,
@@ -114,9 +128,19 @@ fn made(
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
     let colour = |i: usize| match tint(labels[i]) {
         Some(c) => mix(c, [255; 3], 0.2),
+        None if solid[i] => mix(CLAY, [255; 3], 0.35),
         None => [206, 208, 212],
     };
     picture.points(&cloud.points, colour, None);
+    for (_, solid) in report.segmentation.obstacles() {
+        frame(&mut picture, &solid.corners());
+    }
+    for support in report.segmentation.supports.iter().skip(1) {
+        let corners = support.corners();
+        for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            picture.line(a, b, STEEL, 1.5);
+        }
+    }
     for (k, object) in report.objects.iter().enumerate() {
         let colour = OBJECTS[k % OBJECTS.len()];
         if let Ok(fit) = &object.fit {
@@ -134,6 +158,15 @@ fn made(
         }
     }
     picture.finish()
+}
+
+/// The edges of a box, by its corners.
+fn frame(picture: &mut Picture, corners: &[Point; 8]) {
+    for (k, a) in corners.iter().enumerate() {
+        for bit in [1, 2, 4].into_iter().filter(|bit| k & bit == 0) {
+            picture.line(a, &corners[k | bit], CLAY, 1.0);
+        }
+    }
 }
 
 fn caption(id: usize, object: &Object) -> String {

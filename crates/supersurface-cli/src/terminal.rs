@@ -6,6 +6,7 @@ use supersurface::grasp::Grasp;
 use supersurface::pipeline::{Object, Report};
 use supersurface::segment::Segmentation;
 use supersurface::separate::Reason;
+use supersurface::{Point, Vector};
 
 /// The whole text: the support, a row an object, its best `most_grasps` grasps, and what was left out.
 pub(crate) fn table(report: &Report, most_grasps: usize) -> String {
@@ -23,23 +24,36 @@ pub(crate) fn table(report: &Report, most_grasps: usize) -> String {
     }
     for (i, object) in report.objects.iter().enumerate() {
         row(&mut out, i + 1, object);
+        if let Some(k) = s.stands_on.get(i).filter(|k| **k > 0) {
+            let _ = writeln!(out, "       on support {}", k + 1);
+        }
         joined(&mut out, object);
         grasps(&mut out, object, most_grasps);
     }
+    obstacles(&mut out, s);
     dropped(&mut out, s);
     out
 }
 
 fn support(out: &mut String, s: &Segmentation) {
-    if let Some(plane) = s.support {
+    if let Some(main) = s.supports.first() {
+        let plane = main.plane;
         let n = plane.normal();
         let _ = writeln!(
             out,
             "table: normal {}, offset {:.3} m, scatter {:.1} mm",
             numbers(&[n.x, n.y, n.z]),
             plane.offset(),
-            1e3 * s.support_noise
+            1e3 * main.noise
         );
+        for (k, other) in s.supports.iter().enumerate().skip(1) {
+            let corners = other.corners();
+            let sum = corners.iter().map(|p| p.coords).sum::<Vector>();
+            let middle = Point::from(sum / corners.len().max(1) as f64);
+            let height = plane.height(&middle);
+            let way = if height > 0.0 { "above" } else { "below" };
+            let _ = writeln!(out, "support {}: {:.3} m {way} the table", k + 1, height.abs());
+        }
     } else {
         out.push_str("no table: the objects were given\n");
     }
@@ -128,6 +142,18 @@ fn numbers(values: &[f64]) -> String {
     let shown: Vec<String> =
         values.iter().map(|v| format!("{:.3}", (v * 1e3).round() / 1e3 + 0.0)).collect();
     shown.join(" ")
+}
+
+/// What is in a gripper's way, with its size.
+fn obstacles(out: &mut String, s: &Segmentation) {
+    if s.obstacles().next().is_some() {
+        out.push_str("\nin the way:\n");
+    }
+    for (piece, solid) in s.obstacles() {
+        let [x, y, z] = solid.half_extents().map(|h| 2e3 * h);
+        let at = numbers(solid.pose().translation.vector.as_slice());
+        let _ = writeln!(out, "  {x:.0} x {y:.0} x {z:.0} mm at {at}: {}", piece.reason);
+    }
 }
 
 fn dropped(out: &mut String, s: &Segmentation) {

@@ -6,8 +6,9 @@
 use serde::Serialize;
 use supersurface::cloud::PointCloud;
 use supersurface::grasp::{Grasp, Gripper, Kind};
+use supersurface::measure::OrientedBox;
 use supersurface::pipeline::{Object, Report};
-use supersurface::segment::Segmentation;
+use supersurface::segment::{Dropped, Segmentation, Support};
 
 use crate::surface_row::{PoseRow, SurfaceRow};
 
@@ -33,12 +34,19 @@ pub struct ReportHead<'a> {
 /// The JSON text of a report.
 pub fn report_json(report: &Report, head: &ReportHead<'_>) -> String {
     let objects = report.objects.iter().zip(&report.segmentation.objects).enumerate();
-    let objects = objects.map(|(i, (o, points))| object(i + 1, o, points.len(), head)).collect();
+    let objects = objects
+        .map(|(i, (o, points))| {
+            let on = report.segmentation.stands_on.get(i).map(|k| k + 1);
+            object(i + 1, o, on, points.len(), head)
+        })
+        .collect();
     let message = report.objects.is_empty().then(|| "nothing stands on the table".to_owned());
     text(&File {
         message,
         plane: plane(&report.segmentation),
+        supports: report.segmentation.supports.iter().map(SupportRow::new).collect(),
         objects,
+        obstacles: obstacles(&report.segmentation),
         dropped: dropped(&report.segmentation),
         ..File::head(head)
     })
@@ -64,8 +72,10 @@ struct File<'a> {
     cloud: Option<CloudRow>,
     message: Option<String>,
     plane: Option<PlaneRow>,
+    supports: Vec<SupportRow>,
     gripper: Option<&'a str>,
     objects: Vec<ObjectRow>,
+    obstacles: Vec<ObstacleRow>,
     dropped: Vec<DroppedRow>,
     timing_s: std::collections::BTreeMap<&'static str, f64>,
     warnings: &'a [String],
@@ -85,8 +95,10 @@ impl<'a> File<'a> {
             cloud: head.cloud.map(CloudRow::new),
             message: None,
             plane: None,
+            supports: Vec::new(),
             gripper: head.gripper.map(|g| &g.name[..]),
             objects: Vec::new(),
+            obstacles: Vec::new(),
             dropped: Vec::new(),
             timing_s: head.timing.iter().copied().collect(),
             warnings: head.warnings,
@@ -129,17 +141,58 @@ struct PlaneRow {
 }
 
 fn plane(segmentation: &Segmentation) -> Option<PlaneRow> {
-    segmentation.support.map(|p| PlaneRow {
-        normal: p.normal().into_inner().into(),
-        offset: p.offset(),
-        noise: segmentation.support_noise,
-    })
+    segmentation.supports.first().map(PlaneRow::new)
+}
+
+impl PlaneRow {
+    fn new(support: &Support) -> Self {
+        Self {
+            normal: support.plane.normal().into_inner().into(),
+            offset: support.plane.offset(),
+            noise: support.noise,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct SupportRow {
+    #[serde(flatten)]
+    plane: PlaneRow,
+    corners: Vec<[f64; 3]>,
+}
+
+impl SupportRow {
+    fn new(support: &Support) -> Self {
+        let corners = support.corners().iter().map(|p| p.coords.into()).collect();
+        Self { plane: PlaneRow::new(support), corners }
+    }
+}
+
+#[derive(Serialize)]
+struct ObstacleRow {
+    #[serde(flatten)]
+    pose: PoseRow,
+    size: [f64; 3],
+    points: usize,
+    reason: String,
+}
+
+fn obstacles(segmentation: &Segmentation) -> Vec<ObstacleRow> {
+    let row = |(piece, solid): (&Dropped, &OrientedBox)| ObstacleRow {
+        pose: PoseRow::new(solid.pose()),
+        size: solid.half_extents().map(|h| 2.0 * h),
+        points: piece.points.len(),
+        reason: piece.reason.to_string(),
+    };
+    segmentation.obstacles().map(row).collect()
 }
 
 #[derive(Serialize)]
 struct ObjectRow {
     id: usize,
     points: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    support: Option<usize>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joined: Vec<String>,
     surface: Option<SurfaceRow>,
@@ -160,7 +213,13 @@ struct QualityRow {
     family_margin: f64,
 }
 
-fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> ObjectRow {
+fn object(
+    id: usize,
+    object: &Object,
+    support: Option<usize>,
+    points: usize,
+    head: &ReportHead<'_>,
+) -> ObjectRow {
     let fit = object.fit.as_ref();
     let surface = fit.ok().map(|f| SurfaceRow::new(&f.surface));
     let quality = fit.ok().map(|f| QualityRow {
@@ -174,6 +233,7 @@ fn object(id: usize, object: &Object, points: usize, head: &ReportHead<'_>) -> O
     ObjectRow {
         id,
         points,
+        support,
         joined: object.joined.iter().map(ToString::to_string).collect(),
         surface,
         quality,
@@ -225,9 +285,6 @@ struct DroppedRow {
 }
 
 fn dropped(segmentation: &Segmentation) -> Vec<DroppedRow> {
-    let row = |d: &supersurface::segment::Dropped| DroppedRow {
-        points: d.points.len(),
-        reason: d.reason.to_string(),
-    };
+    let row = |d: &Dropped| DroppedRow { points: d.points.len(), reason: d.reason.to_string() };
     segmentation.dropped.iter().map(row).collect()
 }

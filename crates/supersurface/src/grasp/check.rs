@@ -5,6 +5,7 @@ use nalgebra::Translation3;
 
 use super::gripper::{Boxed, Gripper, Kind};
 use super::surroundings::Local;
+use crate::measure::OrientedBox;
 use crate::{Point, Pose, Vector};
 
 /// Clearance kept to the table, in metres.
@@ -20,6 +21,7 @@ pub(super) enum Obstruction {
     Table,
     Object,
     Neighbour,
+    Solid,
 }
 
 /// Boxes of a gripper in the tool frame. For a jaw `gap` is the distance between the pads now; `closed` that at
@@ -89,6 +91,9 @@ pub(super) fn obstruction(
             d.x.abs() < half.x && d.y.abs() < half.y && d.z < half.z && d.z > -half.z - way
         })
     };
+    if !local.solids.is_empty() && boxes.iter().any(|b| meets_solid(b, pose, way, local)) {
+        return Some(Obstruction::Solid);
+    }
     let (middle, radius) = (pose * nalgebra::center(&low, &high), 0.5 * (high - low).norm());
     let own = local.clumps.near(middle, radius).flat_map(|k| &local.spots[k]);
     if own.filter(|s| meets(&s.at)).nth(ALLOWED).is_some() {
@@ -96,6 +101,14 @@ pub(super) fn obstruction(
     }
     let others = local.obstacle_clumps.near(middle, radius).flat_map(|k| &local.obstacles[k]);
     others.filter(|p| meets(p)).nth(ALLOWED).map(|_| Obstruction::Neighbour)
+}
+
+/// True when a box on its way in meets a wall or another solid.
+fn meets_solid(b: &Boxed, pose: &Pose, way: f64, local: &Local) -> bool {
+    let middle = pose * Translation3::from(b.center - Vector::z() * (0.5 * way));
+    let half = (b.size + Vector::z() * way) * 0.5 + Vector::repeat(POINT_MARGIN);
+    let swept = OrientedBox::new(middle, half.into());
+    swept.is_ok_and(|swept| local.solids.iter().any(|solid| swept.meets(solid)))
 }
 
 /// The box around all boxes on their way in.

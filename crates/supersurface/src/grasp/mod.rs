@@ -71,7 +71,7 @@ pub enum Refusal {
     /// Every grasp runs into something on its way in.
     #[error(
         "every way in is blocked: {table} grasps meet the table, {object} the object itself, \
-         {neighbour} a neighbour"
+         {neighbour} a neighbour, {solid} a wall, a board above or furniture"
     )]
     Blocked {
         /// Grasps that meet the table.
@@ -80,6 +80,8 @@ pub enum Refusal {
         object: usize,
         /// Grasps that meet something else.
         neighbour: usize,
+        /// Grasps that meet a wall, a board above or furniture.
+        solid: usize,
     },
     /// The cup seals nowhere.
     #[error(

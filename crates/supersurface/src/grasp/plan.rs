@@ -109,6 +109,7 @@ struct Met {
     table: usize,
     object: usize,
     neighbour: usize,
+    solid: usize,
 }
 
 fn by_jaw(
@@ -166,13 +167,19 @@ fn by_jaw(
             Some(Obstruction::Table) => met.table += 1,
             Some(Obstruction::Object) => met.object += 1,
             Some(Obstruction::Neighbour) => met.neighbour += 1,
+            Some(Obstruction::Solid) => met.solid += 1,
         }
     }
     if out.is_empty() { Err(blocked(&met)) } else { Ok(out) }
 }
 
 fn blocked(met: &Met) -> Refusal {
-    Refusal::Blocked { table: met.table, object: met.object, neighbour: met.neighbour }
+    Refusal::Blocked {
+        table: met.table,
+        object: met.object,
+        neighbour: met.neighbour,
+        solid: met.solid,
+    }
 }
 
 fn jaw_grasp(candidate: &Candidate, judged: Judged, jaw: &Jaw) -> Grasp {
@@ -236,9 +243,10 @@ fn by_suction(
             Some(Obstruction::Table) => met.table += 1,
             Some(Obstruction::Object) => met.object += 1,
             Some(Obstruction::Neighbour) => met.neighbour += 1,
+            Some(Obstruction::Solid) => met.solid += 1,
         }
     }
-    match (out.is_empty(), met.table + met.object + met.neighbour) {
+    match (out.is_empty(), met.table + met.object + met.neighbour + met.solid) {
         (false, _) => Ok(out),
         (true, 0) => Err(Refusal::TooHeavy { lip_radius: cup.lip_radius }),
         (true, _) => Err(blocked(&met)),

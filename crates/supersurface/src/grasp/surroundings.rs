@@ -8,7 +8,8 @@ use super::shell::shell;
 use super::sight::Sight;
 use crate::cloud::{PointCloud, VoxelGrid, normals};
 use crate::fit::Fit;
-use crate::segment::Segmentation;
+use crate::measure::OrientedBox;
+use crate::segment::{Segmentation, Support};
 use crate::shape::{Implicit, Plane};
 use crate::{Direction, Point, Pose, Vector};
 
@@ -22,6 +23,11 @@ const TALLEST: u32 = 200;
 const SKIN: f64 = 0.003;
 /// Radius in which a normal is taken.
 const NORMAL_RADIUS: f64 = 0.009;
+/// How far a gripper reaches around an object, and how much higher another support is at least, in metres.
+const REACH: f64 = 0.16;
+const REACH_DOWN: f64 = 0.05;
+/// One in so many points of an object in a box is one too many.
+const INSIDE: usize = 10;
 /// A fit decides about hidden sides up to this median residual, and from this share of inliers.
 const TRUSTED_RESIDUAL: f64 = 0.003;
 const TRUSTED_SHARE: f64 = 0.8;
@@ -48,6 +54,8 @@ pub struct Surroundings<'a> {
     sight: Option<Sight>,
     /// Points that a gripper must not meet: of each object, and last of everything else.
     matter: Vec<Vec<Point>>,
+    /// Walls, boards and furniture, in the frame of the table.
+    solids: Vec<OrientedBox>,
 }
 
 /// One object with what is around it, in the frame of the table.
@@ -58,6 +66,8 @@ pub(super) struct Local {
     pub(super) obstacles: Vec<Point>,
     pub(super) clumps: Clumps,
     pub(super) obstacle_clumps: Clumps,
+    /// Walls, boards and furniture within reach.
+    pub(super) solids: Vec<OrientedBox>,
     /// Middle of the object's matter, as far as it is known.
     pub(super) centre: Point,
     /// Heights of its lowest and highest spot.
@@ -68,17 +78,24 @@ pub(super) struct Local {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Looks at a scene once, for all its objects and grippers.
+    /// Looks at a scene once, for all objects on its main support and all grippers.
     pub fn new(cloud: &'a PointCloud, segmentation: &'a Segmentation) -> Self {
+        Self::over(cloud, segmentation, 0)
+    }
+
+    /// The same for the objects on the support at place `k` of the segmentation's.
+    pub fn over(cloud: &'a PointCloud, segmentation: &'a Segmentation, k: usize) -> Self {
+        let support = segmentation.supports.get(k);
         let points = || segmentation.objects.iter().flatten().filter_map(|i| get(cloud, *i));
         let count = points().count().max(1) as f64;
         let middle = Point::from(points().map(|p| p.coords).sum::<Vector>() / count);
         let radius = points().map(|p| (p - middle).norm()).fold(0.0, f64::max) + 0.1;
-        let frame = table_frame(segmentation.support.as_ref(), cloud.viewpoint, &middle);
+        let frame = table_frame(support.map(|s| &s.plane), cloud.viewpoint, &middle);
         let sight = Sight::new(cloud, &middle, radius);
-        let matter = matter(cloud, segmentation, &frame, sight.as_ref());
-        let has_table = segmentation.support.is_some();
-        Self { cloud, segmentation, frame, has_table, sight, matter }
+        let matter = matter(cloud, segmentation, support, &frame, sight.as_ref());
+        let has_table = support.is_some();
+        let solids = solids(cloud, segmentation, k, &frame);
+        Self { cloud, segmentation, frame, has_table, sight, matter, solids }
     }
 
     /// The object of an index; `None` for one without points.
@@ -122,6 +139,7 @@ impl<'a> Surroundings<'a> {
             obstacle_clumps: Clumps::new(obstacles.iter().copied()),
             spots,
             obstacles,
+            solids: self.solids_near(&low, &high),
             centre,
             heights: [floor.min(low.z), high.z],
             has_table: self.has_table,
@@ -189,9 +207,17 @@ impl<'a> Surroundings<'a> {
         }
     }
 
+    /// Boxes around an object within a gripper's reach.
+    fn solids_near(&self, low: &Point, high: &Point) -> Vec<OrientedBox> {
+        let half = (high - low) * 0.5 + Vector::repeat(REACH);
+        let middle = nalgebra::center(low, high);
+        let about = OrientedBox::new(Pose::translation(middle.x, middle.y, middle.z), half.into());
+        let near = |solid: &&OrientedBox| about.as_ref().is_ok_and(|about| about.meets(solid));
+        self.solids.iter().filter(near).copied().collect()
+    }
+
     /// What stands around an object within a gripper's reach.
     fn obstacles(&self, object: usize, low: &Point, high: &Point) -> Vec<Point> {
-        const REACH: f64 = 0.16;
         let (low, high) = (low - Vector::repeat(REACH), high + Vector::repeat(REACH));
         let near = |p: &&Point| (0..3).all(|k| p[k] > low[k] && p[k] < high[k]);
         let others = self.matter.iter().enumerate().filter(|(k, _)| *k != object);
@@ -204,11 +230,12 @@ impl<'a> Surroundings<'a> {
 fn matter(
     cloud: &PointCloud,
     segmentation: &Segmentation,
+    support: Option<&Support>,
     frame: &Pose,
     sight: Option<&Sight>,
 ) -> Vec<Vec<Point>> {
-    let has_table = segmentation.support.is_some();
-    let margin = if has_table { 3.0 * segmentation.support_noise + 0.004 } else { f64::MIN };
+    let has_table = support.is_some();
+    let margin = support.map_or(f64::MIN, |s| 3.0 * s.noise + 0.004);
     let inward = frame.inverse();
     let rest = segmentation.objects.len();
     let mut owners = vec![rest; cloud.points.len()];
@@ -241,6 +268,31 @@ fn matter(
         out
     };
     groups.iter().map(solid).collect()
+}
+
+/// The boxes of obstacles and of the supports above support `k`, in the frame of the table. A box that an object is in is
+/// that of something concave: its points alone are met.
+fn solids(
+    cloud: &PointCloud,
+    segmentation: &Segmentation,
+    k: usize,
+    frame: &Pose,
+) -> Vec<OrientedBox> {
+    let thin = |object: &Vec<u32>| {
+        object.iter().step_by(object.len().div_ceil(300).max(1)).copied().collect()
+    };
+    let points: Vec<Vec<u32>> = segmentation.objects.iter().map(thin).collect();
+    let is_clear = |solid: &OrientedBox| {
+        let inside = |i: &&u32| get(cloud, **i).is_some_and(|p| solid.contains(&p));
+        points.iter().all(|object| INSIDE * object.iter().filter(inside).count() < object.len())
+    };
+    let own = segmentation.supports.get(k).map(|s| s.plane);
+    let is_above = |s: &&Support| {
+        own.is_some_and(|own| s.corners().first().is_some_and(|p| own.height(p) > REACH_DOWN))
+    };
+    let boards = segmentation.supports.iter().filter(is_above).filter_map(Support::board);
+    let boxes = segmentation.obstacles().map(|(_, solid)| *solid);
+    boxes.chain(boards).filter(is_clear).map(|solid| solid.moved(&frame.inverse())).collect()
 }
 
 /// True where a fit may decide about hidden sides.

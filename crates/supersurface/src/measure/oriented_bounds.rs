@@ -37,6 +37,42 @@ impl OrientedBox {
         finite.then(|| Self { pose, half_extents: half.into() })
     }
 
+    /// The box of half edges `half_extents` (in metres, along the axes of the pose). Fails where a number is not finite or
+    /// an edge negative.
+    pub fn new(pose: Pose, half_extents: [f64; 3]) -> Result<Self, InvalidShape> {
+        let at = pose.translation.vector.iter().chain(&pose.rotation.coords);
+        let place = at.copied().find(|v| !v.is_finite());
+        InvalidShape::check(place.is_none(), "pose of the box", f64::NAN, "finite")?;
+        for h in half_extents {
+            let range = "0 or positive, finite";
+            InvalidShape::check(h >= 0.0 && h.is_finite(), "half edge of the box", h, range)?;
+        }
+        Ok(Self { pose, half_extents })
+    }
+
+    /// The box carried along by a pose.
+    pub fn moved(&self, by: &Pose) -> Self {
+        Self { pose: by * self.pose, ..*self }
+    }
+
+    /// True when two boxes have a point in common: no face of either and no pair of edges parts them
+    /// (separating axes; Gottschalk, Lin and Manocha 1996).
+    pub fn meets(&self, other: &Self) -> bool {
+        let turn = (self.pose.rotation.inverse() * other.pose.rotation).to_rotation_matrix();
+        let between = other.pose.translation.vector - self.pose.translation.vector;
+        let away = self.pose.rotation.inverse_transform_vector(&between);
+        let (a, b) = (Vector::from(self.half_extents), Vector::from(other.half_extents));
+        let apart = |axis: Vector| {
+            let reach = a.dot(&axis.abs()) + b.dot(&turn.inverse_transform_vector(&axis).abs());
+            // parallel edges span no axis
+            axis.norm_squared() > 1e-12 && away.dot(&axis).abs() > reach
+        };
+        let own = [Vector::x(), Vector::y(), Vector::z()];
+        let others = own.map(|e| turn * e);
+        let crossed = own.iter().flat_map(|e| others.iter().map(|f| e.cross(f)));
+        !own.into_iter().chain(others).chain(crossed).any(apart)
+    }
+
     /// Centre and axes of the box.
     pub const fn pose(&self) -> &Pose {
         &self.pose

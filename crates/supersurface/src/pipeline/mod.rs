@@ -89,9 +89,11 @@ pub fn run(
 ) -> Result<Report, SegmentError> {
     let mut report = find(cloud, options, progress)?;
     progress(Stage::Grasp(report.objects.len()));
-    let around = Surroundings::new(cloud, &report.segmentation);
+    let supports = report.segmentation.supports.len().max(1);
+    let around = each(supports, |k| Surroundings::over(cloud, &report.segmentation, k));
     let grasps = each(report.objects.len(), |i| {
-        plan(i, report.objects[i].fit.as_ref().ok(), &around, gripper, &options.grasp)
+        let k = report.segmentation.stands_on.get(i).copied().unwrap_or(0);
+        plan(i, report.objects[i].fit.as_ref().ok(), &around[k], gripper, &options.grasp)
     });
     report.objects.iter_mut().zip(grasps).for_each(|(object, grasps)| object.grasps = grasps);
     Ok(report)
@@ -110,7 +112,8 @@ pub fn find(
         Objects::Given => segment_masks(cloud, &options.segment)?,
     };
     progress(Stage::Fit(segmentation.objects.len()));
-    let (support, noise) = (segmentation.support, segmentation.support_noise);
+    let main = segmentation.supports.first();
+    let (support, noise) = (main.map(|s| s.plane), main.map_or(0.0, |s| s.noise));
     let around = Around { cloud, support, noise };
     let given = |points: &Vec<u32>| {
         let fit = match options.objects {

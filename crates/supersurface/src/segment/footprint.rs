@@ -28,8 +28,22 @@ impl Ground {
     }
 }
 
+/// The point of a plane at a spot.
+pub(crate) fn spot_on(plane: &Plane, s: &Spot) -> Point {
+    let [u, v] = plane.tangents();
+    Point::from(plane.normal().into_inner() * -plane.offset() + *u * s[0] + *v * s[1])
+}
+
+/// A rectangle: its middle, the direction of its longer side, half its sides, the longer one first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rectangle {
+    pub(crate) middle: Spot,
+    pub(crate) along: Spot,
+    pub(crate) half: [f64; 2],
+}
+
 /// A convex polygon, counter-clockwise; empty, a point or a line when it has under three corners.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Outline {
     corners: Vec<Spot>,
     /// For each edge its inward unit normal n and c, so that n·s + c is the depth of a spot s.
@@ -61,6 +75,34 @@ impl Outline {
             corners.extend(spots.first());
         }
         Self::of(corners)
+    }
+
+    /// Its corners.
+    pub(crate) fn corners(&self) -> &[Spot] {
+        &self.corners
+    }
+
+    /// The least rectangle around it, one of whose sides lies along an edge; `None` without area.
+    pub(crate) fn rectangle(&self) -> Option<Rectangle> {
+        let around = |[x, y, _]: &[f64; 3]| {
+            let (along, across) = ([*y, -*x], [*x, *y]);
+            let range = |d: Spot| {
+                let at = |s: &Spot| d[0] * s[0] + d[1] * s[1];
+                let values = self.corners.iter().map(at);
+                values.fold([f64::MAX, f64::MIN], |r, v| [r[0].min(v), r[1].max(v)])
+            };
+            let ([a, b], [c, d]) = (range(along), range(across));
+            let (u, v) = (0.5 * (a + b), 0.5 * (c + d));
+            let middle = [u * along[0] + v * across[0], u * along[1] + v * across[1]];
+            let half = [0.5 * (b - a), 0.5 * (d - c)];
+            if half[0] >= half[1] {
+                Rectangle { middle, along, half }
+            } else {
+                Rectangle { middle, along: across, half: [half[1], half[0]] }
+            }
+        };
+        let size = |r: &Rectangle| r.half[0] * r.half[1];
+        self.edges.iter().map(around).min_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
     /// Area in square metres.

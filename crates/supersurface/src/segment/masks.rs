@@ -36,8 +36,8 @@ pub fn segment_masks(
     let mut random = Stream::new(options.seed, 0);
     let support = table::find(cloud, &background, &mut random).ok().map(|(support, _)| support);
     Ok(Segmentation {
-        support: support.as_ref().map(|s| s.plane),
-        support_noise: support.as_ref().map_or(0.0, |s| s.noise),
+        stands_on: vec![0; support.iter().len() * objects.len()],
+        supports: support.into_iter().collect(),
         objects,
         ..Segmentation::default()
     })

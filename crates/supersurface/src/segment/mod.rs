@@ -1,7 +1,7 @@
 //! Floor 7: from a cloud to the table plane and what stands on it.
 //!
-//! [`segment`] finds the support (a table, or the floor that things stand on), takes the points above
-//! it and parts them into clumps; [`segment_whole`] takes a cloud that is one object already, and
+//! [`segment`] finds the main support (a table, or the floor that things stand on), further ones above and below it, and
+//! walls; it takes the points above each support and parts them into clumps; [`segment_whole`] takes a cloud that is one object already, and
 //! [`segment_masks`] one whose objects are labelled. What was left out is listed with the reason.
 //!
 //! Objects that touch are one clump, which [`separate`](crate::separate) cuts.
@@ -17,6 +17,7 @@ mod patches;
 mod piece;
 mod planes;
 mod raster;
+mod room;
 mod sight;
 mod table;
 
@@ -25,29 +26,29 @@ pub(crate) use frame::Frame;
 pub(crate) use image::hangs;
 pub use masks::{segment_masks, segment_whole};
 pub(crate) use patches::{Patches, patches};
-pub use table::NoTable;
+pub(crate) use raster::Raster;
+pub use table::{NoTable, Support};
 
 use crate::Point;
 use crate::cloud::PointCloud;
+use crate::measure::OrientedBox;
 use crate::numeric::random::Stream;
 use crate::segment::clusters::Class;
 use crate::segment::image::Image;
-use crate::segment::raster::Raster;
+use crate::segment::room::{LARGE, Room, box_about, furnish};
 use crate::segment::sight::Sight;
-use crate::segment::table::Support;
 use crate::shape::Plane;
 
 /// What a cloud is made of. Indices into the cloud's points; never copies.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Segmentation {
-    /// The plane that the objects stand on, its normal towards the sensor; `None` when the objects
-    /// were given and none was found.
-    pub support: Option<Plane>,
-    /// Standard deviation of the support's own points about it, in metres.
-    pub support_noise: f64,
+    /// What objects may stand on, the main one first; none when the objects were given and none was found.
+    pub supports: Vec<Support>,
     /// Points of each object.
     pub objects: Vec<Vec<u32>>,
+    /// The support, by its place in `supports`, that each object stands on; empty without one.
+    pub stands_on: Vec<usize>,
     /// What was seen above the support and left out, with the reason.
     pub dropped: Vec<Dropped>,
     /// The image that an unorganised cloud was taken as.
@@ -55,6 +56,16 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
+    /// The plane of the main support, its normal towards the sensor.
+    pub fn support(&self) -> Option<Plane> {
+        self.supports.first().map(|s| s.plane)
+    }
+
+    /// What is in a gripper's way and no object: walls, furniture and what the image cuts off, each with its box.
+    pub fn obstacles(&self) -> impl Iterator<Item = (&Dropped, &OrientedBox)> {
+        self.dropped.iter().filter_map(|d| Some((d, d.bounds.as_ref()?)))
+    }
+
     /// The image that an unorganised cloud was taken as.
     pub(crate) const fn image(&self) -> Option<&Raster> {
         self.image.as_ref()
@@ -89,6 +100,21 @@ pub struct Dropped {
     pub points: Vec<u32>,
     /// Why.
     pub reason: DropReason,
+    /// Where it is large and solid, and so in a gripper's way: the box about what was seen of it.
+    pub bounds: Option<OrientedBox>,
+}
+
+impl Dropped {
+    /// A piece with its box, where its reason asks for one: in its own plane for a wall, else upright on `plane`.
+    pub(crate) fn new(
+        cloud: &[Point],
+        points: Vec<u32>,
+        reason: DropReason,
+        plane: &Plane,
+    ) -> Self {
+        let bounds = reason.is_solid().then(|| box_about(cloud, &points, plane)).flatten();
+        Self { points, reason, bounds }
+    }
 }
 
 /// Why a piece was left out.
@@ -107,6 +133,16 @@ pub enum DropReason {
     CutOff,
     /// A small piece in the air, with the support seen under it: stray readings.
     Hanging,
+    /// A large upright plane: a wall, or a side of a tote or a shelf.
+    Wall,
+    /// It hangs on a support or reaches up to it: an edge, a leg, a panel.
+    Fixture,
+}
+
+impl DropReason {
+    const fn is_solid(self) -> bool {
+        matches!(self, Self::TooLarge | Self::CutOff | Self::Wall | Self::Fixture)
+    }
 }
 
 impl std::fmt::Display for DropReason {
@@ -118,6 +154,8 @@ impl std::fmt::Display for DropReason {
             Self::OffSupport => "not on the part of the support that was seen",
             Self::CutOff => "cut off by the border of the image",
             Self::Hanging => "hangs in the air: stray readings",
+            Self::Wall => "a wall, or a side of a container or a shelf",
+            Self::Fixture => "part of a support: its edge, a leg or a panel",
         })
     }
 }
@@ -193,6 +231,11 @@ pub enum SegmentError {
     },
 }
 
+/// Depth beneath the support from which a point may be of another one, in metres.
+const BENEATH: f64 = 0.1;
+/// Depth beneath a support at which a point may still be its own, in metres.
+const SLACK: f64 = 0.03;
+
 /// Finite points without which nothing is tried.
 const LEAST: usize = 30;
 
@@ -209,7 +252,7 @@ fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
     }
 }
 
-/// The support of a scene and the objects on it.
+/// The supports of a scene and the objects on them.
 ///
 /// ```
 /// use supersurface::{Point, cloud::PointCloud, segment::{SegmentOptions, segment}};
@@ -223,7 +266,7 @@ fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
 /// cloud.viewpoint = Some(Point::origin());
 /// let found = segment(&cloud, &SegmentOptions::default())?;
 /// assert_eq!(found.objects.len(), 1);
-/// assert!((found.support.unwrap().offset() - 0.6).abs() < 1e-3);
+/// assert!((found.support().unwrap().offset() - 0.6).abs() < 1e-3);
 /// # Ok::<(), supersurface::segment::SegmentError>(())
 /// ```
 pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
@@ -236,50 +279,114 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
         Some(_) => None,
         None => Raster::of(cloud, &seen, &sight, &normal, &mut random),
     };
-    let (objects, dropped) = match &raster {
-        None => part(cloud, &support, &sight, options),
+    let mut found = match &raster {
+        None => part(cloud, support, &sight, options),
         Some(raster) => {
             let sight = Sight { pixel: Some(raster.pixel), ..sight };
-            let (mut objects, mut dropped) = part(&raster.cloud, &support, &sight, options);
-            objects.iter_mut().for_each(|o| *o = raster.back(o));
-            dropped.iter_mut().for_each(|d| d.points = raster.back(&d.points));
-            (objects, dropped)
+            let mut found = part(&raster.cloud, support, &sight, options);
+            found.objects.iter_mut().for_each(|o| *o = raster.back(o));
+            found.dropped.iter_mut().for_each(|d| d.points = raster.back(&d.points));
+            found
         }
     };
-    Ok(Segmentation {
-        support: Some(support.plane),
-        support_noise: support.noise,
-        objects,
-        dropped,
-        image: raster,
-    })
+    found.image = raster;
+    Ok(found)
 }
 
-/// The objects over a support, and what was left out.
+/// The objects over the supports, and what was left out.
 fn part(
     cloud: &PointCloud,
-    support: &Support,
+    main: Support,
     sight: &Sight,
     options: &SegmentOptions,
-) -> (Vec<Vec<u32>>, Vec<Dropped>) {
-    let classify = |p: &Point| {
-        if !sight::seen(p) {
-            return Class::Missing;
+) -> Segmentation {
+    let single = |p: &Point| (0, main.class(p, sight, options));
+    let mut class: Vec<Class> = cloud.points.iter().map(|p| single(p).1).collect();
+    let mut pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
+    let Room { levels, mut walls } =
+        furnish(cloud, &furniture(cloud, &pieces, &main), &main, sight, options);
+    let supports: Vec<Support> = std::iter::once(main).chain(levels).collect();
+    let mut dropped = Vec::new();
+    let mut on: Vec<Vec<Vec<u32>>> = vec![Vec::new(); supports.len()];
+    if supports.len() == 1 && walls.is_empty() {
+        on[0] = pieces;
+    } else {
+        let mut below = Vec::with_capacity(class.len());
+        for (p, class) in cloud.points.iter().zip(&mut class) {
+            let k = standing(p, &supports);
+            *class = supports[k].class(p, sight, options);
+            below.push(k as u32);
         }
-        let height = support.plane.height(p) / support.margin(p, sight, options);
-        if height > 1.0 {
-            Class::Above
-        } else if height > 0.5 {
-            Class::Low
-        } else {
-            Class::Other
+        walls.iter().flat_map(|w| &w.points).for_each(|i| class[*i as usize] = Class::Other);
+        pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
+        for piece in pieces {
+            let some: Vec<Point> = piece
+                .iter()
+                .step_by(piece.len().div_ceil(400))
+                .map(|i| cloud.points[*i as usize])
+                .collect();
+            if let Some(wall) = walls.iter_mut().find(|w| w.has_part(&some)) {
+                wall.points.extend(piece);
+                continue;
+            }
+            let mut votes = vec![0usize; supports.len()];
+            piece.iter().for_each(|i| votes[below[*i as usize] as usize] += 1);
+            let most = votes.iter().copied().max();
+            let k = votes.iter().position(|v| Some(*v) == most).unwrap_or(0);
+            let fixed = (0..supports.len()).any(|j| j != k && supports[j].has_part(&some));
+            if fixed {
+                dropped.push(Dropped::new(
+                    &cloud.points,
+                    piece,
+                    DropReason::Fixture,
+                    &supports[k].plane,
+                ));
+            } else {
+                on[k].push(piece);
+            }
         }
+        for mut wall in walls {
+            wall.points.sort_unstable();
+            dropped.push(Dropped::new(&cloud.points, wall.points, DropReason::Wall, &wall.plane));
+        }
+    }
+    let mut objects: Vec<(Vec<u32>, usize)> = Vec::new();
+    for (k, (support, pieces)) in supports.iter().zip(on).enumerate() {
+        let image = match (sight::grid(cloud), sight.eye) {
+            (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
+            _ => None,
+        };
+        let (found, left) = objects::gather(&cloud.points, pieces, support, sight, image, options);
+        objects.extend(found.into_iter().map(|points| (points, k)));
+        dropped.extend(left);
+    }
+    objects.sort_unstable_by_key(|(points, _)| points.first().copied());
+    let (objects, stands_on) = objects.into_iter().unzip();
+    Segmentation { supports, objects, stands_on, dropped, image: None }
+}
+
+/// The points among which furniture is looked for: of pieces too large for an object, and beneath the support.
+fn furniture(cloud: &PointCloud, pieces: &[Vec<u32>], support: &Support) -> Vec<u32> {
+    let point = |i: &u32| cloud.points.get(*i as usize);
+    let is_large = |piece: &&Vec<u32>| {
+        let some = piece.iter().step_by(16).filter_map(point);
+        let bounds = some.fold(None, |b: Option<(Point, Point)>, p| {
+            Some(b.map_or((*p, *p), |(l, h)| (l.inf(p), h.sup(p))))
+        });
+        bounds.is_some_and(|(low, high)| (high - low).norm() > LARGE)
     };
-    let class: Vec<Class> = cloud.points.iter().map(classify).collect();
-    let pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
-    let image = match (sight::grid(cloud), sight.eye) {
-        (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
-        _ => None,
-    };
-    objects::gather(&cloud.points, pieces, support, sight, image, options)
+    let mut points: Vec<u32> = pieces.iter().filter(is_large).flatten().copied().collect();
+    let beneath = |p: &Point| sight::seen(p) && support.plane.height(p) < -BENEATH;
+    points.extend(cloud.points.iter().zip(0u32..).filter(|(p, _)| beneath(p)).map(|(_, i)| i));
+    points.sort_unstable();
+    points
+}
+
+/// The support that a point is over: the highest beneath it that was seen there.
+fn standing(p: &Point, supports: &[Support]) -> usize {
+    let heights = supports.iter().map(|s| s.plane.height(p)).enumerate();
+    let under = heights.clone().filter(|(k, h)| *h > -SLACK && supports[*k].is_under(p));
+    let nearest = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+    let other = || heights.filter(|(_, h)| *h > -SLACK).min_by_key(|(k, _)| *k);
+    under.min_by(nearest).or_else(other).map_or(0, |(k, _)| k)
 }

@@ -46,7 +46,8 @@ pub(crate) fn gather(
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
     pieces.sort_by_key(|p| (std::cmp::Reverse(p.len()), p.first().copied()));
     let noise = pieces.split_off(pieces.len().min(MOST));
-    dropped.extend(noise.into_iter().map(|points| Dropped { points, reason: DropReason::Speck }));
+    let drop = |points, reason| Dropped::new(cloud, points, reason, &support.plane);
+    dropped.extend(noise.into_iter().map(|points| drop(points, DropReason::Speck)));
     for points in pieces {
         let piece = Piece::new(points, cloud, &support.plane, &ground);
         let reason = misplaced(&piece, support, &ground, options);
@@ -93,7 +94,7 @@ pub(crate) fn gather(
                 image.iter_mut().for_each(|image| image.grow(&mut points));
                 objects.push(points);
             }
-            Some(reason) => dropped.push(Dropped { points: piece.points, reason }),
+            Some(reason) => dropped.push(drop(piece.points, reason)),
         }
     }
     objects.sort_unstable_by_key(|o| o.first().copied());

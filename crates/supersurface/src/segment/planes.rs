@@ -10,6 +10,7 @@ use nalgebra::Matrix3;
 use crate::cloud::{PointCloud, smallest_axis};
 use crate::numeric::random::Stream;
 use crate::segment::sight::{Sight, depth_noise};
+use crate::shape::Plane;
 use crate::{Direction, Point, Vector};
 
 /// Widths: this many standard deviations, plus a floor in metres.
@@ -53,6 +54,11 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
+    /// The plane in the cloud's frame, where the eye is at `origin`.
+    pub(crate) fn plane(&self, origin: &Vector) -> Option<Plane> {
+        Plane::new(self.normal.into_inner(), self.offset - self.normal.dot(origin)).ok()
+    }
+
     /// Signed height of a reading over the plane, and the width that its noise allows.
     #[inline]
     pub(crate) fn height(&self, r: &Reading) -> (f64, f64) {
@@ -88,13 +94,18 @@ pub(crate) fn readings(cloud: &PointCloud, sample: &[u32], sight: &Sight) -> Vec
 }
 
 /// The planes that hold the most readings, each with those that no earlier plane holds, until one
-/// holds under 3 % of all or `most` are found.
-pub(crate) fn dominant(all: &[Reading], most: usize, random: &mut Stream) -> Vec<Candidate> {
+/// holds under 3 % of all or `most` are found. Only normals that `allowed` lets pass are tried.
+pub(crate) fn dominant(
+    all: &[Reading],
+    most: usize,
+    random: &mut Stream,
+    allowed: impl Fn(&Direction) -> bool,
+) -> Vec<Candidate> {
     let mut free: Vec<u32> = (0..all.len() as u32).collect();
     let least = (all.len() / 33).max(20);
     let mut planes = Vec::new();
     while planes.len() < most && free.len() >= least {
-        let Some(found) = best(all, &free, random) else { break };
+        let Some(found) = best(all, &free, random, &allowed) else { break };
         if found.members.len() < least {
             break;
         }
@@ -112,11 +123,19 @@ const TRIALS: usize = 240;
 const JURY: usize = 1500;
 
 /// The plane that most of the free readings agree with.
-fn best(all: &[Reading], free: &[u32], random: &mut Stream) -> Option<Candidate> {
+fn best(
+    all: &[Reading],
+    free: &[u32],
+    random: &mut Stream,
+    allowed: impl Fn(&Direction) -> bool,
+) -> Option<Candidate> {
     let jury: Vec<Reading> = spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
     let mut best: Option<(f64, Direction, f64)> = None;
     for trial in 0..TRIALS {
         let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
+        if !allowed(&normal) {
+            continue;
+        }
         let mut score = 0.0;
         for r in &jury {
             let (h, width) = height(&normal, offset, r);
@@ -223,7 +242,7 @@ mod tests {
             PointCloud { viewpoint: Some(Point::origin()), ..PointCloud::from_points(points) };
         let indices: Vec<u32> = (0..6000).collect();
         let sight = Sight::of(&cloud, &indices);
-        let planes = dominant(&readings(&cloud, &indices, &sight), 4, &mut random);
+        let planes = dominant(&readings(&cloud, &indices, &sight), 4, &mut random, |_| true);
         assert_eq!(planes.len(), 2);
         assert!(planes[0].members.len() > 3800);
         let table = Vector::new(0.0, -0.7, -0.5).normalize();

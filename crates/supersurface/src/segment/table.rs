@@ -8,11 +8,12 @@
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
-use crate::segment::footprint::{Ground, Outline, Spot};
+use crate::segment::clusters::Class;
+use crate::segment::footprint::{Ground, Outline, Spot, spot_on};
 use crate::segment::planes::{
     Candidate, Reading, dominant, height, least_squares, readings, spread,
 };
-use crate::segment::sight::Sight;
+use crate::segment::sight::{Sight, seen};
 use crate::shape::Plane;
 use crate::{Direction, Point};
 
@@ -98,12 +99,14 @@ const PIECE_GAP: f64 = 0.06;
 /// Gap that things on the support may make in what is seen of it, in metres.
 const OBJECT_GAP: f64 = 0.25;
 
-/// The support that was found.
-#[derive(Clone, Debug)]
-pub(crate) struct Support {
-    pub(crate) plane: Plane,
-    /// Standard deviation of its points, in metres.
-    pub(crate) noise: f64,
+/// A level thing that objects stand on: a table, a floor, a board.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Support {
+    /// Its plane, the normal upwards.
+    pub plane: Plane,
+    /// Standard deviation of its points about the plane, in metres.
+    pub noise: f64,
     /// The same in widths of the noise model.
     pub(crate) relative: f64,
     /// Where it was seen.
@@ -111,6 +114,26 @@ pub(crate) struct Support {
 }
 
 impl Support {
+    /// Corners of the convex outline of what was seen of it, counter-clockwise from above.
+    pub fn corners(&self) -> Vec<Point> {
+        self.outline.corners().iter().map(|s| spot_on(&self.plane, s)).collect()
+    }
+
+    /// What a point is, by its height.
+    pub(crate) fn class(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> Class {
+        if !seen(p) {
+            return Class::Missing;
+        }
+        let height = self.plane.height(p) / self.margin(p, sight, options);
+        if height > 1.0 {
+            Class::Above
+        } else if height > 0.5 {
+            Class::Low
+        } else {
+            Class::Other
+        }
+    }
+
     /// Height from which a point is above the support rather than its noise, in metres.
     pub(crate) fn margin(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> f64 {
         options.margin.unwrap_or_else(|| {
@@ -132,10 +155,14 @@ pub(crate) fn find(
     let sample = spread(indices, SAMPLE, random);
     let sight = Sight::of(cloud, &sample);
     let all = readings(cloud, &sample, &sight);
-    let mut planes = dominant(&all, 6, random);
+    let mut planes = dominant(&all, 6, random, |_| true);
     planes.sort_by_key(|c| std::cmp::Reverse(c.members.len()));
+    // From the eye's frame to the cloud's.
+    let origin =
+        sample.first().and_then(|i| Some(cloud.points.get(*i as usize)?.coords - all.first()?.ray));
     let wide = |candidate: &Candidate, random: &mut Stream| {
-        let support = refine(cloud, indices, candidate, &sight, random)?;
+        let plane = candidate.plane(&origin?)?;
+        let support = refine(cloud, indices, &plane, &sight, random)?;
         let width = support.outline.diameter();
         Some((support, width))
     };
@@ -203,19 +230,19 @@ fn judge(candidate: &Candidate, all: &[Reading], sight: &Sight) -> Result<(), No
 }
 
 /// The plane by all its points, with its noise and outline.
-fn refine(
+pub(crate) fn refine(
     cloud: &PointCloud,
     indices: &[u32],
-    candidate: &Candidate,
+    plane: &Plane,
     sight: &Sight,
     random: &mut Stream,
 ) -> Option<Support> {
     let sample = spread(indices, FINE_SAMPLE, random);
     let all = readings(cloud, &sample, sight);
-    let (mut normal, mut offset) = (candidate.normal, candidate.offset);
-    let (mut relative, mut noise) = (0.0, 0.0);
     // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
+    let (mut normal, mut offset) = (plane.normal(), plane.height(&Point::from(origin)));
+    let (mut relative, mut noise) = (0.0, 0.0);
     let place = |r: &Reading| Point::from(r.ray + origin);
     let mut column = Vec::with_capacity(all.len());
     for _ in 0..2 {

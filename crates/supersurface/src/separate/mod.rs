@@ -21,7 +21,7 @@ pub(crate) use bodies::Around;
 
 use crate::cloud::{PointCloud, Sets};
 use crate::fit::{Fit, FitError, FitOptions};
-use crate::segment::{DropReason, Dropped, Frame, Segmentation};
+use crate::segment::{DropReason, Dropped, Frame, Raster, Segmentation, Support};
 use clump::clumped;
 use view::View;
 
@@ -116,14 +116,55 @@ pub fn separate(
     segmentation: &mut Segmentation,
     options: &FitOptions,
 ) -> Vec<Thing> {
-    let image = segmentation.image();
+    let mut things: Vec<(Thing, usize)> = Vec::new();
+    for k in 0..segmentation.supports.len().max(1) {
+        let standing = segmentation.objects.iter().enumerate();
+        let standing =
+            standing.filter(|(i, _)| segmentation.stands_on.get(*i).is_none_or(|s| *s == k));
+        let clumps: Vec<&[u32]> = standing.map(|(_, points)| &points[..]).collect();
+        let support = segmentation.supports.get(k);
+        let found = separate_on(cloud, segmentation.image(), support, &clumps, options);
+        things.extend(found.into_iter().map(|thing| (thing, k)));
+    }
+    things.sort_by_key(|(thing, _)| thing.points.first().copied());
+    let left = left_over(&segmentation.objects, &things, cloud.points.len());
+    let frame = Frame::of(cloud);
+    let is_cut = |(thing, _): &(Thing, usize)| frame.is_some_and(|f| f.cuts(&thing.points));
+    let (cut, things): (Vec<_>, Vec<_>) = things.into_iter().partition(is_cut);
+    for (thing, k) in cut {
+        let (points, reason) = (thing.points, DropReason::CutOff);
+        segmentation.dropped.push(match segmentation.supports.get(k) {
+            Some(support) => Dropped::new(&cloud.points, points, reason, &support.plane),
+            None => Dropped { points, reason, bounds: None },
+        });
+    }
+    if !left.is_empty() {
+        segmentation.dropped.push(Dropped {
+            points: left,
+            reason: DropReason::Speck,
+            bounds: None,
+        });
+    }
+    segmentation.objects = things.iter().map(|(thing, _)| thing.points.clone()).collect();
+    segmentation.stands_on = things.iter().map(|(_, k)| *k).collect();
+    things.into_iter().map(|(thing, _)| thing).collect()
+}
+
+/// The objects that the clumps on one support consist of.
+fn separate_on(
+    cloud: &PointCloud,
+    image: Option<&Raster>,
+    support: Option<&Support>,
+    clumps: &[&[u32]],
+    options: &FitOptions,
+) -> Vec<Thing> {
     let scene = Around {
         cloud: image.map_or(cloud, |i| &i.cloud),
-        support: segmentation.support,
-        noise: segmentation.support_noise.max(LEAST_NOISE),
+        support: support.map(|s| s.plane),
+        noise: support.map_or(0.0, |s| s.noise).max(LEAST_NOISE),
     };
-    let clumps = each(segmentation.objects.len(), |k| {
-        let points = &segmentation.objects[k];
+    let clumps = each(clumps.len(), |k| {
+        let points = clumps[k];
         match image {
             Some(image) => clumped(&scene, k, &image.pixels(points), options),
             None => clumped(&scene, k, points, options),
@@ -135,7 +176,7 @@ pub fn separate(
         None => (0..pieces.len()).map(|k| (vec![k], Vec::new())).collect(),
     };
     let around = Around { cloud, ..scene };
-    let mut things = each(groups.len(), |k| {
+    each(groups.len(), |k| {
         let (members, reasons) = &groups[k];
         let own = members.iter().map(|m| &pieces[*m]);
         let mut points: Vec<u32> = own.clone().flat_map(|p| &p.points).copied().collect();
@@ -151,24 +192,13 @@ pub fn separate(
             _ => around.fit(&points, options),
         };
         Thing { fit, points, joined }
-    });
-    things.sort_by_key(|thing| thing.points.first().copied());
-    let left = left_over(&segmentation.objects, &things, cloud.points.len());
-    let specks = (!left.is_empty()).then_some((left, DropReason::Speck));
-    let frame = Frame::of(cloud);
-    let is_cut = |thing: &Thing| frame.is_some_and(|frame| frame.cuts(&thing.points));
-    let (cut, things): (Vec<Thing>, Vec<Thing>) = things.into_iter().partition(is_cut);
-    let cut = cut.into_iter().map(|thing| (thing.points, DropReason::CutOff));
-    let dropped = cut.chain(specks).map(|(points, reason)| Dropped { points, reason });
-    segmentation.dropped.extend(dropped);
-    segmentation.objects = things.iter().map(|thing| thing.points.clone()).collect();
-    things
+    })
 }
 
 /// The points of clumps that are no thing's.
-fn left_over(clumps: &[Vec<u32>], things: &[Thing], count: usize) -> Vec<u32> {
+fn left_over(clumps: &[Vec<u32>], things: &[(Thing, usize)], count: usize) -> Vec<u32> {
     let mut taken = vec![false; count];
-    things.iter().flat_map(|thing| &thing.points).for_each(|i| taken[*i as usize] = true);
+    things.iter().flat_map(|(thing, _)| &thing.points).for_each(|i| taken[*i as usize] = true);
     let mut left: Vec<u32> =
         clumps.iter().flatten().filter(|i| !taken[**i as usize]).copied().collect();
     left.sort_unstable();

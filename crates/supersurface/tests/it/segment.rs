@@ -140,7 +140,7 @@ fn objects_on_a_table_are_found_from_all_heights() {
         let (plane, things) = scene(pitch);
         let (cloud, truth) = look(&things, 1);
         let found = segment(&cloud, &SegmentOptions::default()).unwrap();
-        let support = found.support.unwrap();
+        let support = found.support().unwrap();
         assert!(support.normal().dot(&plane.normal()) > 1f64.to_radians().cos());
         assert!((support.offset() - plane.offset()).abs() < 0.002);
         check(&cloud, &truth, things.len());
@@ -223,7 +223,7 @@ fn a_wall_behind_the_table_is_left_out() {
     things.push(Thing::Flat(wall));
     let (cloud, _) = look(&things, 8);
     let found = segment(&cloud, &SegmentOptions::default()).unwrap();
-    assert!(found.support.unwrap().normal().dot(&plane.normal()) > 0.999);
+    assert!(found.support().unwrap().normal().dot(&plane.normal()) > 0.999);
     assert_eq!(found.objects.len(), 2);
     assert!(!found.dropped.is_empty());
 }
@@ -234,7 +234,7 @@ fn given_segmentations_are_taken() {
     assert_eq!(segment_masks(&cloud, &SegmentOptions::default()), Err(SegmentError::NoLabels));
     cloud.labels = truth.iter().map(|k| 10 * k.unwrap_or(0) as u32).collect();
     let found = segment_masks(&cloud, &SegmentOptions::default()).unwrap();
-    assert!(found.support.is_some());
+    assert!(found.support().is_some());
     assert_eq!(found.objects.len(), 3);
     for (k, object) in found.objects.iter().enumerate() {
         assert!(object.iter().all(|i| truth[*i as usize] == Some(k + 1)));
@@ -245,11 +245,11 @@ fn given_segmentations_are_taken() {
             *p = Point::new(f64::NAN, f64::NAN, f64::NAN);
         }
     }
-    assert_eq!(segment_masks(&cloud, &SegmentOptions::default()).unwrap().support, None);
+    assert_eq!(segment_masks(&cloud, &SegmentOptions::default()).unwrap().support(), None);
     let whole = segment_whole(&cloud).unwrap();
     assert_eq!(whole.objects.len(), 1);
     assert_eq!(whole.objects[0].len(), cloud.finite_count());
-    assert_eq!(whole.support, None);
+    assert_eq!(whole.support(), None);
 }
 
 #[test]
