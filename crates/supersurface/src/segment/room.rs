@@ -9,12 +9,12 @@ use crate::cloud::{PointCloud, VoxelGrid};
 use crate::measure::OrientedBox;
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
-use crate::segment::footprint::{Ground, Outline, Rectangle, spot_on};
+use crate::segment::footprint::{Ground, Outline, Rectangle, Spot, spot_on};
 use crate::segment::planes::{Reading, dominant, readings, spread};
-use crate::segment::sight::Sight;
+use crate::segment::sight::{Sight, grid};
 use crate::segment::table::{Support, refine};
 use crate::shape::Plane;
-use crate::{Point, Pose};
+use crate::{Direction, Point, Pose, Vector};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 /// Length of a patch from which it is no face of an object, in metres.
@@ -26,15 +26,21 @@ const DEEP: f64 = 0.08;
 const TALL: f64 = 0.06;
 /// Height between two levels, at least, in metres.
 const STEP: f64 = 0.1;
-/// Share of a patch's outline that its readings cover, at least: a plane that only passes through things, or along the
-/// rim of a tote, covers less.
-const COVERED: f64 = 0.3;
+/// Share of a patch's middle that its readings cover, at least, and how much of it is the middle: a plane along the rim
+/// of a tote covers none of it.
+const COVERED: f64 = 0.2;
+const MIDDLE: f64 = 0.6;
 /// Side of the cells in which that is counted, and gap that parts two patches, in metres.
 const CELL: f64 = 0.025;
 const GAP: f64 = 0.05;
 /// Cosine to the support's normal: of a level from here on, of a wall up to here (a tote's walls lean).
 const LEVEL: f64 = 0.99;
 const UPRIGHT: f64 = 0.3;
+/// Half the distance over which a reading's normal is taken, in metres, and its cosine to that of its plane.
+const AROUND: f64 = 0.02;
+const ALIKE: f64 = 0.8;
+/// How far beside its outline a wall goes on where its readings have no normal, in metres.
+const EDGE: f64 = 0.01;
 /// Walls that meet in a corner: how far apart they and their tops may be, in metres, and the cosine of their normals.
 const CORNER: f64 = 0.05;
 const SQUARE: f64 = 0.5;
@@ -85,68 +91,81 @@ pub(crate) fn furnish(
         return room;
     }
     let up = support.plane.normal();
-    let is_upright = |plane: &Plane| up.dot(&plane.normal()).abs() < UPRIGHT;
-    let is_level = |plane: &Plane| up.dot(&plane.normal()).abs() > LEVEL;
-    let sample = spread(indices, SAMPLE, random);
-    let all = readings(cloud, &sample, sight);
-    let point = |i: &u32| cloud.points.get(*i as usize);
-    let origin = sample.first().and_then(point).zip(all.first()).map(|(p, r)| p.coords - r.ray);
-    let Some(origin) = origin else { return room };
-    let cos = |n: &crate::Direction| up.dot(n).abs();
-    let planes = dominant(&all, MOST, random, |n| cos(n) > LEVEL || cos(n) < UPRIGHT);
-    let mut free = indices.to_vec();
+    let normals = rough_normals(cloud, indices, sight);
     let mut sides = Vec::new();
-    for candidate in planes {
-        let Some(plane) = candidate.plane(&origin) else { continue };
-        let (level, upright) = (is_level(&plane), is_upright(&plane));
-        let ground = Ground::of(&plane);
-        let members = candidate.members.iter().filter_map(|k| point(sample.get(*k as usize)?));
-        let across = Outline::around(&mut members.map(|p| ground.spot(p)).collect()).diameter();
-        if !(level && across > LARGE || upright && across > SIDE) {
-            continue;
-        }
-        let eye = Point::from(origin);
-        let inside = |i: &u32| {
-            point(i).is_some_and(|p| {
-                let r = Reading::new(p, sight, &eye);
-                let width = r.slope * plane.normal().dot(&r.ray).abs() + r.floor;
-                plane.height(p).abs() < width
-            })
+    for level in [true, false] {
+        let leans = |n: &Direction| up.dot(n).abs();
+        let allowed = |n: &Direction| if level { leans(n) > LEVEL } else { leans(n) < UPRIGHT };
+        // what has no normal, or another, is no part of such a plane
+        let fits = |n: &Option<Direction>| {
+            n.is_none_or(|n| n.norm() > 0.5 && (leans(&n) > ALIKE) == level)
         };
-        let near: Vec<u32> = free.iter().copied().filter(inside).collect();
-        for points in patches(cloud, &near, &ground) {
-            let spots = || points.iter().filter_map(point).map(|p| ground.spot(p));
-            let outline = Outline::around(&mut spots().collect());
-            let Some(rectangle) = outline.rectangle() else { continue };
-            if covered(spots(), &outline) < COVERED {
+        let some = indices.iter().zip(&normals).filter(|(_, n)| fits(n));
+        let mut free: Vec<(u32, Option<Direction>)> = some.map(|(i, n)| (*i, *n)).collect();
+        let named: Vec<u32> = free.iter().map(|f| f.0).collect();
+        let sample = spread(&named, SAMPLE, random);
+        let all = readings(cloud, &sample, sight);
+        let point = |i: &u32| cloud.points.get(*i as usize);
+        let origin = sample.first().and_then(point).zip(all.first()).map(|(p, r)| p.coords - r.ray);
+        let Some(origin) = origin.filter(|_| free.len() >= LEAST) else { continue };
+        let eye = Point::from(origin);
+        for candidate in dominant(&all, MOST, random, allowed) {
+            let Some(plane) = candidate.plane(&origin).filter(|p| allowed(&p.normal())) else {
                 continue;
-            }
-            let [long, short] = rectangle.half.map(|h| 2.0 * h);
-            let above = support.plane.height(&spot_on(&plane, &rectangle.middle));
-            let faces_up = plane.normal().dot(&up) > 0.0 || sight.eye.is_none();
-            if level && faces_up {
-                let apart = room
-                    .levels
-                    .iter()
-                    .all(|l| l.plane.height(&spot_on(&plane, &rectangle.middle)).abs() > STEP);
-                if long > LARGE && short > DEEP && above.abs() > STEP && apart {
-                    let found = refine(cloud, &points, &plane, sight, random);
-                    room.levels
-                        .extend(found.map(|l| l.upwards(&up)).filter(|l| is_level(&l.plane)));
+            };
+            let inside = |i: &u32| {
+                point(i).is_some_and(|p| {
+                    let r = Reading::new(p, sight, &eye);
+                    let width = r.slope * plane.normal().dot(&r.ray).abs() + r.floor;
+                    plane.height(p).abs() < width
+                })
+            };
+            let ground = Ground::of(&plane);
+            let faces =
+                |n: &Option<Direction>| n.is_none_or(|n| n.dot(&plane.normal()).abs() > ALIKE);
+            let near = free
+                .iter()
+                .filter(|(i, n)| faces(n) && inside(i))
+                .map(|f| f.0)
+                .collect::<Vec<u32>>();
+            let mut taken = Vec::new();
+            for points in patches(cloud, &near, &ground) {
+                let spots: Vec<Spot> =
+                    points.iter().filter_map(point).map(|p| ground.spot(p)).collect();
+                let outline = Outline::around(&mut spots.clone());
+                let Some(rectangle) = outline.rectangle() else { continue };
+                let [long, short] = rectangle.half.map(|h| 2.0 * h);
+                if long < SIDE || covered(&spots, &rectangle) < COVERED {
+                    continue;
                 }
-            } else {
-                let wall = Wall::new(cloud, points, plane, outline, support);
+                let middle = spot_on(&plane, &rectangle.middle);
+                let faces_up = plane.normal().dot(&up) > 0.0 || sight.eye.is_none();
+                if level && faces_up {
+                    let differs = |l: &Support| l.plane.height(&middle).abs() > STEP;
+                    let apart = differs(support) && room.levels.iter().all(differs);
+                    if long > LARGE && short > DEEP && apart {
+                        let found = refine(cloud, &points, &plane, sight, random);
+                        let found = found.map(|l| l.upwards(&up));
+                        room.levels.extend(found.filter(|l| allowed(&l.plane.normal())));
+                        taken.extend(points);
+                    }
+                    continue;
+                }
+                let all = indices.iter().copied().filter(|i| {
+                    inside(i) && point(i).is_some_and(|p| outline.depth(&ground.spot(p)) > -EDGE)
+                });
+                let wall = Wall::new(cloud, all.collect(), plane, outline, support);
                 let tall = level || wall.rise(support) > TALL;
                 if tall && long > LARGE {
+                    taken.extend(&wall.points);
                     room.walls.push(wall);
-                } else if tall && long > SIDE {
+                } else if tall && !level {
                     sides.push(wall);
                 }
             }
+            taken.sort_unstable();
+            free.retain(|(i, _)| taken.binary_search(i).is_err());
         }
-        let mut taken: Vec<u32> = room.walls.iter().flat_map(|w| &w.points).copied().collect();
-        taken.sort_unstable();
-        free.retain(|i| taken.binary_search(i).is_err());
     }
     let mut known = 0;
     while known < room.walls.len() {
@@ -178,11 +197,39 @@ fn patches(cloud: &PointCloud, points: &[u32], ground: &Ground) -> Vec<Vec<u32>>
     patches
 }
 
-/// Share of an outline that some spots cover.
-fn covered(spots: impl Iterator<Item = [f64; 2]>, outline: &Outline) -> f64 {
-    let feet: Vec<Point> = spots.map(|[x, y]| Point::new(x, y, 0.0)).collect();
+/// Share of the middle of a rectangle that some spots cover.
+fn covered(spots: &[Spot], r: &Rectangle) -> f64 {
+    let turned = |s: &Spot| {
+        let [x, y] = [s[0] - r.middle[0], s[1] - r.middle[1]];
+        [x * r.along[0] + y * r.along[1], y * r.along[0] - x * r.along[1]]
+    };
+    let [long, short] = r.half.map(|h| MIDDLE * h);
+    let inside = spots.iter().map(turned).filter(|s| s[0].abs() < long && s[1].abs() < short);
+    let feet: Vec<Point> = inside.map(|[x, y]| Point::new(x, y, 0.0)).collect();
     let cells = VoxelGrid::new(&feet, 0..feet.len() as u32, CELL).map_or(0, |g| g.occupied());
-    cells as f64 * CELL * CELL / outline.area().max(1e-9)
+    cells as f64 * CELL * CELL / (4.0 * long * short).max(1e-9)
+}
+
+/// The normals of some points of an image by the readings about a hand's breadth around; `None` for other clouds.
+fn rough_normals(cloud: &PointCloud, indices: &[u32], sight: &Sight) -> Vec<Option<Direction>> {
+    let known = grid(cloud).zip(sight.pixel).zip(sight.eye);
+    let normal = |i: &u32| {
+        let (([width, height], pixel), eye) = known?;
+        let i = *i as usize;
+        let step =
+            (AROUND / (pixel * (cloud.points.get(i)? - eye).norm())).clamp(2.0, 40.0) as usize;
+        let (u, v) = (i % width, i / width);
+        let (left, right) = (u.saturating_sub(step), (u + step).min(width - 1));
+        let (above, below) = (v.saturating_sub(step), (v + step).min(height - 1));
+        let across = cloud.points[v * width + right] - cloud.points[v * width + left];
+        let down = cloud.points[below * width + u] - cloud.points[above * width + u];
+        Direction::try_new(across.cross(&down), 1e-12).filter(|n| n.x.is_finite())
+    };
+    let nothing = Direction::new_unchecked(Vector::zeros());
+    indices
+        .iter()
+        .map(|i| if known.is_some() { normal(i).or(Some(nothing)) } else { None })
+        .collect()
 }
 
 impl Wall {
@@ -232,7 +279,7 @@ fn is_part(sample: &[Point], plane: &Plane, outline: &Outline, front: f64) -> bo
 }
 
 impl Support {
-    fn upwards(self, up: &crate::Direction) -> Self {
+    fn upwards(self, up: &Direction) -> Self {
         if self.plane.normal().dot(up) > 0.0 {
             return self;
         }
