@@ -8,17 +8,20 @@
 
 mod clusters;
 mod convexity;
+mod facets;
 mod footprint;
 mod frame;
 mod image;
 mod masks;
 mod objects;
+mod part;
 mod patches;
 mod piece;
 mod planes;
 mod raster;
 mod room;
 mod sight;
+mod solids;
 mod table;
 
 pub use convexity::convex_pieces;
@@ -33,10 +36,9 @@ use crate::Point;
 use crate::cloud::PointCloud;
 use crate::measure::OrientedBox;
 use crate::numeric::random::Stream;
-use crate::segment::clusters::Class;
-use crate::segment::image::Image;
-use crate::segment::room::{LARGE, Room, box_about, furnish};
+use crate::segment::part::part;
 use crate::segment::sight::Sight;
+use crate::segment::solids::box_about;
 use crate::shape::Plane;
 
 /// What a cloud is made of. Indices into the cloud's points; never copies.
@@ -231,11 +233,6 @@ pub enum SegmentError {
     },
 }
 
-/// Depth beneath the support from which a point may be of another one, in metres.
-const BENEATH: f64 = 0.1;
-/// Depth beneath a support at which a point may still be its own, in metres.
-const SLACK: f64 = 0.03;
-
 /// Finite points without which nothing is tried.
 const LEAST: usize = 30;
 
@@ -291,102 +288,4 @@ pub fn segment(cloud: &PointCloud, options: &SegmentOptions) -> Result<Segmentat
     };
     found.image = raster;
     Ok(found)
-}
-
-/// The objects over the supports, and what was left out.
-fn part(
-    cloud: &PointCloud,
-    main: Support,
-    sight: &Sight,
-    options: &SegmentOptions,
-) -> Segmentation {
-    let single = |p: &Point| (0, main.class(p, sight, options));
-    let mut class: Vec<Class> = cloud.points.iter().map(|p| single(p).1).collect();
-    let mut pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
-    let Room { levels, mut walls } =
-        furnish(cloud, &furniture(cloud, &pieces, &main), &main, sight, options);
-    let supports: Vec<Support> = std::iter::once(main).chain(levels).collect();
-    let mut dropped = Vec::new();
-    let mut on: Vec<Vec<Vec<u32>>> = vec![Vec::new(); supports.len()];
-    if supports.len() == 1 && walls.is_empty() {
-        on[0] = pieces;
-    } else {
-        let mut below = Vec::with_capacity(class.len());
-        for (p, class) in cloud.points.iter().zip(&mut class) {
-            let k = standing(p, &supports);
-            *class = supports[k].class(p, sight, options);
-            below.push(k as u32);
-        }
-        walls.iter().flat_map(|w| &w.points).for_each(|i| class[*i as usize] = Class::Other);
-        pieces = clusters::pieces(cloud, &class, sight, options.gap, 20);
-        for piece in pieces {
-            let some: Vec<Point> = piece
-                .iter()
-                .step_by(piece.len().div_ceil(400))
-                .map(|i| cloud.points[*i as usize])
-                .collect();
-            if let Some(wall) = walls.iter_mut().find(|w| w.has_part(&some)) {
-                wall.points.extend(piece);
-                continue;
-            }
-            let mut votes = vec![0usize; supports.len()];
-            piece.iter().for_each(|i| votes[below[*i as usize] as usize] += 1);
-            let most = votes.iter().copied().max();
-            let k = votes.iter().position(|v| Some(*v) == most).unwrap_or(0);
-            let fixed = (0..supports.len()).any(|j| j != k && supports[j].has_part(&some));
-            if fixed {
-                dropped.push(Dropped::new(
-                    &cloud.points,
-                    piece,
-                    DropReason::Fixture,
-                    &supports[k].plane,
-                ));
-            } else {
-                on[k].push(piece);
-            }
-        }
-        for mut wall in walls {
-            wall.points.sort_unstable();
-            dropped.push(Dropped::new(&cloud.points, wall.points, DropReason::Wall, &wall.plane));
-        }
-    }
-    let mut objects: Vec<(Vec<u32>, usize)> = Vec::new();
-    for (k, (support, pieces)) in supports.iter().zip(on).enumerate() {
-        let image = match (sight::grid(cloud), sight.eye) {
-            (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
-            _ => None,
-        };
-        let (found, left) = objects::gather(&cloud.points, pieces, support, sight, image, options);
-        objects.extend(found.into_iter().map(|points| (points, k)));
-        dropped.extend(left);
-    }
-    objects.sort_unstable_by_key(|(points, _)| points.first().copied());
-    let (objects, stands_on) = objects.into_iter().unzip();
-    Segmentation { supports, objects, stands_on, dropped, image: None }
-}
-
-/// The points among which furniture is looked for: of pieces too large for an object, and beneath the support.
-fn furniture(cloud: &PointCloud, pieces: &[Vec<u32>], support: &Support) -> Vec<u32> {
-    let point = |i: &u32| cloud.points.get(*i as usize);
-    let is_large = |piece: &&Vec<u32>| {
-        let some = piece.iter().step_by(16).filter_map(point);
-        let bounds = some.fold(None, |b: Option<(Point, Point)>, p| {
-            Some(b.map_or((*p, *p), |(l, h)| (l.inf(p), h.sup(p))))
-        });
-        bounds.is_some_and(|(low, high)| (high - low).norm() > LARGE)
-    };
-    let mut points: Vec<u32> = pieces.iter().filter(is_large).flatten().copied().collect();
-    let beneath = |p: &Point| sight::seen(p) && support.plane.height(p) < -BENEATH;
-    points.extend(cloud.points.iter().zip(0u32..).filter(|(p, _)| beneath(p)).map(|(_, i)| i));
-    points.sort_unstable();
-    points
-}
-
-/// The support that a point is over: the highest beneath it that was seen there.
-fn standing(p: &Point, supports: &[Support]) -> usize {
-    let heights = supports.iter().map(|s| s.plane.height(p)).enumerate();
-    let under = heights.clone().filter(|(k, h)| *h > -SLACK && supports[*k].is_under(p));
-    let nearest = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
-    let other = || heights.filter(|(_, h)| *h > -SLACK).min_by_key(|(k, _)| *k);
-    under.min_by(nearest).or_else(other).map_or(0, |(k, _)| k)
 }

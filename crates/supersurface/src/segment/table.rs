@@ -134,6 +134,18 @@ impl Support {
         }
     }
 
+    /// The same with its normal on the side of `up`.
+    pub(crate) fn upwards(self, up: &Direction) -> Self {
+        if self.plane.normal().dot(up) > 0.0 {
+            return self;
+        }
+        // the same spots by the other normal's axes
+        let (corners, plane) = (self.corners(), self.plane.flipped());
+        let ground = Ground::of(&plane);
+        let outline = Outline::around(&mut corners.iter().map(|p| ground.spot(p)).collect());
+        Self { plane, outline, ..self }
+    }
+
     /// Height from which a point is above the support rather than its noise, in metres.
     pub(crate) fn margin(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> f64 {
         options.margin.unwrap_or_else(|| {

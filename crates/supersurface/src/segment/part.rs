@@ -1,0 +1,125 @@
+//! Which support does a piece stand on, and which is part of the room?
+
+use crate::Point;
+use crate::cloud::PointCloud;
+use crate::segment::clusters::{Class, pieces};
+use crate::segment::image::Image;
+use crate::segment::objects::gather;
+use crate::segment::room::{Room, Stock, furnish};
+use crate::segment::sight::{Sight, grid};
+use crate::segment::solids::{is_over, is_part};
+use crate::segment::table::Support;
+use crate::segment::{DropReason, Dropped, SegmentOptions, Segmentation};
+
+/// Depth beneath a support at which a point may still be its own, in metres.
+const SLACK: f64 = 0.03;
+/// Points of a piece without which it is none, and those of it that are looked at.
+const LEAST: usize = 20;
+const SOME: usize = 400;
+/// Share of a piece that lies in the thickness of walls, or of a board, when it is a part of them.
+const PART: f64 = 0.7;
+/// How far under a level the top of a leg or a panel that carries it is, at most, in metres.
+const UNDER: f64 = 0.04;
+
+/// The objects over the supports, and what was left out.
+pub(crate) fn part(
+    cloud: &PointCloud,
+    main: Support,
+    sight: &Sight,
+    options: &SegmentOptions,
+) -> Segmentation {
+    let mut class: Vec<Class> =
+        cloud.points.iter().map(|p| main.class(p, sight, options)).collect();
+    let all = pieces(cloud, &class, sight, options.gap, LEAST);
+    let stock = Stock::of(cloud, &all, &main, options);
+    let Room { levels, walls } = furnish(cloud, &stock, &main, sight, options);
+    let supports: Vec<Support> = std::iter::once(main).chain(levels).collect();
+    let mut dropped = Vec::new();
+    let on = if supports.len() == 1 && walls.is_empty() {
+        vec![all]
+    } else {
+        let mut solid: Vec<Vec<u32>> = walls.iter().map(|w| w.facet.points.clone()).collect();
+        let below: Vec<u32> = cloud.points.iter().map(|p| standing(p, &supports)).collect();
+        for ((class, p), k) in class.iter_mut().zip(&cloud.points).zip(&below) {
+            *class = supports[*k as usize].class(p, sight, options);
+        }
+        let mut is_free = vec![true; class.len()];
+        for points in &mut solid {
+            points.retain(|i| std::mem::take(&mut is_free[*i as usize]));
+            points.iter().for_each(|i| class[*i as usize] = Class::Other);
+        }
+        let mut on: Vec<Vec<Vec<u32>>> = vec![Vec::new(); supports.len()];
+        for piece in pieces(cloud, &class, sight, options.gap, LEAST) {
+            let step = piece.len().div_ceil(SOME).max(1);
+            let some = piece.iter().step_by(step);
+            let some: Vec<Point> = some.map(|i| cloud.points[*i as usize]).collect();
+            let owners: Vec<usize> =
+                some.iter().filter_map(|p| walls.iter().position(|w| w.holds(p))).collect();
+            if owners.len() as f64 > PART * some.len() as f64 {
+                solid[most(&owners, walls.len())].extend(piece);
+                continue;
+            }
+            let below: Vec<usize> = piece.iter().map(|i| below[*i as usize] as usize).collect();
+            let k = most(&below, supports.len());
+            let fixed = supports.iter().enumerate().any(|(j, s)| j != k && s.has_part(&some));
+            if fixed {
+                let (reason, plane) = (DropReason::Fixture, &supports[k].plane);
+                dropped.push(Dropped::new(&cloud.points, piece, reason, plane));
+            } else {
+                on[k].push(piece);
+            }
+        }
+        for (mut points, wall) in solid.into_iter().zip(&walls) {
+            points.sort_unstable();
+            let plane = &wall.facet.plane;
+            dropped.push(Dropped::new(&cloud.points, points, DropReason::Wall, plane));
+        }
+        on
+    };
+    let mut objects: Vec<(Vec<u32>, usize)> = Vec::new();
+    for (k, (support, pieces)) in supports.iter().zip(on).enumerate() {
+        let image = match (grid(cloud), sight.eye) {
+            (Some([width, _]), Some(eye)) => Image::new(&cloud.points, &class, width, eye),
+            _ => None,
+        };
+        let (found, left) = gather(&cloud.points, pieces, support, sight, image, options);
+        objects.extend(found.into_iter().map(|points| (points, k)));
+        dropped.extend(left);
+    }
+    objects.sort_unstable_by_key(|(points, _)| points.first().copied());
+    let (objects, stands_on) = objects.into_iter().unzip();
+    Segmentation { supports, objects, stands_on, dropped, image: None }
+}
+
+/// The support that a point is over: the highest beneath it that was seen there, else the first beneath it.
+fn standing(p: &Point, supports: &[Support]) -> u32 {
+    let heights = supports.iter().zip(0u32..).map(|(s, k)| (s, k, s.plane.height(p)));
+    let beneath = heights.filter(|(_, _, h)| *h > -SLACK);
+    let under = beneath.clone().filter(|(s, _, _)| is_over(p, &s.plane, &s.outline));
+    let nearest = under.min_by(|a, b| a.2.total_cmp(&b.2));
+    nearest.or_else(|| beneath.min_by_key(|(_, k, _)| *k)).map_or(0, |(_, k, _)| k)
+}
+
+/// The value that comes most often; of several, the least. 0 for none.
+fn most(values: &[usize], count: usize) -> usize {
+    let mut votes = vec![0usize; count];
+    values.iter().for_each(|k| votes[*k] += 1);
+    let best = votes.iter().copied().max();
+    votes.iter().position(|v| Some(*v) == best).unwrap_or(0)
+}
+
+impl Support {
+    /// Whether a piece is a part of it, as its edge is, or reaches up to it from below, as a leg does.
+    fn has_part(&self, sample: &[Point]) -> bool {
+        let own = sample.iter().filter(|p| is_part(p, &self.plane, &self.outline)).count();
+        if own as f64 > PART * sample.len() as f64 {
+            return true;
+        }
+        let mut heights: Vec<f64> = sample.iter().map(|p| self.plane.height(p)).collect();
+        heights.sort_unstable_by(f64::total_cmp);
+        // a few stray readings do not count
+        let top = heights.iter().nth_back(heights.len() / 50).copied().unwrap_or(f64::MIN);
+        let under = sample.iter().filter(|p| is_over(p, &self.plane, &self.outline)).count();
+        top > -UNDER && top < 0.0 && 2 * under > sample.len()
+    }
+}
