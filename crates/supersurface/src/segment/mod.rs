@@ -114,7 +114,11 @@ impl Dropped {
         reason: DropReason,
         plane: &Plane,
     ) -> Self {
-        let bounds = reason.is_solid().then(|| box_about(cloud, &points, plane)).flatten();
+        let large = |solid: &OrientedBox| {
+            reason.is_solid() || solid.half_extents().iter().any(|h| 2.0 * h > FURNITURE)
+        };
+        let may_be = reason.is_solid() || reason == DropReason::OffSupport;
+        let bounds = may_be.then(|| box_about(cloud, &points, plane)).flatten().filter(large);
         Self { points, reason, bounds }
     }
 }
@@ -233,6 +237,8 @@ pub enum SegmentError {
     },
 }
 
+/// Length from which what stands beside a support is furniture and no stray reading, in metres.
+const FURNITURE: f64 = 0.12;
 /// Finite points without which nothing is tried.
 const LEAST: usize = 30;
 

@@ -17,8 +17,8 @@ use crate::segment::sight::Sight;
 use crate::segment::table::Support;
 use crate::segment::{DropReason, Dropped, SegmentOptions};
 
-/// Depth inside the support's outline at which at least a third of an object is, in metres.
-const EDGE: f64 = 0.01;
+/// Share of an object that is over what was seen of its support, at least.
+const STANDING: f64 = 1.0 / 3.0;
 /// Top of a thing, in margins, up to which it may be the support's own unevenness.
 const FLAT: f64 = 1.5;
 /// Share of curved rows from which a piece is an inside, and from which it is nothing else besides.
@@ -50,7 +50,7 @@ pub(crate) fn gather(
     dropped.extend(noise.into_iter().map(|points| drop(points, DropReason::Speck)));
     for points in pieces {
         let piece = Piece::new(points, cloud, &support.plane, &ground);
-        let reason = misplaced(&piece, support, &ground, options);
+        let reason = misplaced(&piece, support, options);
         kept.push((piece, reason));
     }
     // The smallest first, so that crumbs find their thing before things find each other.
@@ -206,18 +206,11 @@ fn carries(lower: &Piece, upper: &Piece) -> bool {
 }
 
 /// Why a piece cannot be an object, by its place and size; `None` when it can.
-fn misplaced(
-    piece: &Piece,
-    support: &Support,
-    ground: &Ground,
-    options: &SegmentOptions,
-) -> Option<DropReason> {
+fn misplaced(piece: &Piece, support: &Support, options: &SegmentOptions) -> Option<DropReason> {
     if piece.size() > options.largest_size {
         return Some(DropReason::TooLarge);
     }
-    let inside = |p: &&Point| support.outline.depth(&ground.spot(p)) > EDGE;
-    let standing = piece.sample.iter().filter(inside).count();
-    (3 * standing < piece.sample.len()).then_some(DropReason::OffSupport)
+    (support.share_over(piece.sample.iter()) < STANDING).then_some(DropReason::OffSupport)
 }
 
 /// Why a whole thing is none; `None` when it is one.

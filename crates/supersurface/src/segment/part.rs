@@ -7,7 +7,7 @@ use crate::segment::image::Image;
 use crate::segment::objects::gather;
 use crate::segment::room::{Room, Stock, furnish};
 use crate::segment::sight::{Sight, grid};
-use crate::segment::solids::{is_over, is_part};
+use crate::segment::solids::{SIDE, THICK, is_over, is_part};
 use crate::segment::table::Support;
 use crate::segment::{DropReason, Dropped, SegmentOptions, Segmentation};
 
@@ -53,8 +53,10 @@ pub(crate) fn part(
             let step = piece.len().div_ceil(SOME).max(1);
             let some = piece.iter().step_by(step);
             let some: Vec<Point> = some.map(|i| cloud.points[*i as usize]).collect();
-            let owners: Vec<usize> =
-                some.iter().filter_map(|p| walls.iter().position(|w| w.holds(p))).collect();
+            let owners: Vec<usize> = some
+                .iter()
+                .filter_map(|p| walls.iter().position(|w| w.holds(p, &supports[0])))
+                .collect();
             if owners.len() as f64 > PART * some.len() as f64 {
                 solid[most(&owners, walls.len())].extend(piece);
                 continue;
@@ -111,7 +113,7 @@ fn most(values: &[usize], count: usize) -> usize {
 impl Support {
     /// Whether a piece is a part of it, as its edge is, or reaches up to it from below, as a leg does.
     fn has_part(&self, sample: &[Point]) -> bool {
-        let own = sample.iter().filter(|p| is_part(p, &self.plane, &self.outline)).count();
+        let own = sample.iter().filter(|p| is_part(p, &self.plane, &self.outline, SIDE)).count();
         if own as f64 > PART * sample.len() as f64 {
             return true;
         }
@@ -120,6 +122,6 @@ impl Support {
         // a few stray readings do not count
         let top = heights.iter().nth_back(heights.len() / 50).copied().unwrap_or(f64::MIN);
         let under = sample.iter().filter(|p| is_over(p, &self.plane, &self.outline)).count();
-        top > -UNDER && top < 0.0 && 2 * under > sample.len()
+        top > -UNDER && top < 0.5 * THICK && 2 * under > sample.len()
     }
 }

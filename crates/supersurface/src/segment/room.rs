@@ -7,18 +7,20 @@
 
 use std::collections::BTreeSet;
 
-use crate::Point;
 use crate::cloud::PointCloud;
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
 use crate::segment::facets::{CELL, Facet, Family, facets, lies_in};
-use crate::segment::footprint::{Ground, Spot};
+use crate::segment::footprint::{Ground, Outline, Spot, spot_on};
 use crate::segment::sight::{Sight, seen};
-use crate::segment::solids::{THICK, is_part};
+use crate::segment::solids::{SIDE, THICK, is_part};
 use crate::segment::table::{Support, refine};
+use crate::{Direction, Point};
 
 /// Size of a piece in which furniture is looked for, and length of a facet of it, at least, in metres.
 const LARGE: f64 = 0.4;
+/// Length of a board that the eye sees beneath, at least, in metres.
+const BOARD: f64 = 0.25;
 /// Width of a level, and height of a wall, at least, in metres.
 const DEEP: f64 = 0.08;
 const TALL: f64 = 0.06;
@@ -26,18 +28,24 @@ const TALL: f64 = 0.06;
 const STEP: f64 = 0.1;
 /// Depth beneath the support from which a point may be of another one, in metres.
 const BENEATH: f64 = 0.1;
+/// Height of the bottom of a tote or a shelf over what it stands on, at least, in metres.
+const LOW: f64 = 0.012;
 /// Share of a board's middle under which something was seen, at least, and how far under it, in metres.
-const OPEN: f64 = 0.1;
-const CLEAR: f64 = 0.05;
+const OPEN: f64 = 0.3;
+const CLEAR: f64 = 0.045;
+/// Where the side of something thicker than a board would be seen: how far under its top, and beside its outline, in
+/// metres.
+const FACE: [f64; 2] = [0.08, 0.005];
+const BESIDE: f64 = 0.02;
 /// How far beside its outline a wall goes on where its readings have no normal, in metres.
 const EDGE: f64 = 0.01;
 /// Walls that meet in a corner: how far apart they and their tops may be, in metres, and the cosine of their normals.
 const CORNER: f64 = 0.05;
 const SQUARE: f64 = 0.5;
-/// Share of its length along which a wall carries a level top behind it when it is the face of a body, and how far from
-/// its own top that may be, in metres.
-const CARRIES: f64 = 0.3;
+/// How far from its own top what a wall carries may be, in metres.
 const RIM: f64 = 0.025;
+/// Length of a back, at least, in multiples of its board's.
+const BACK: f64 = 0.7;
 
 /// Levels and walls.
 #[derive(Clone, Debug, Default)]
@@ -117,77 +125,37 @@ pub(crate) fn furnish(
 ) -> Room {
     // a stream of its own: what is found of the table does not depend on it
     let random = &mut Stream::new(options.seed, 1);
-    Room {
-        levels: levels(cloud, stock, support, sight, random),
-        walls: walls(cloud, stock, support, sight, random),
-    }
-}
-
-/// The level facets that are supports.
-fn levels(
-    cloud: &PointCloud,
-    stock: &Stock,
-    support: &Support,
-    sight: &Sight,
-    random: &mut Stream,
-) -> Vec<Support> {
     let up = support.plane.normal();
+    let flat = facets(cloud, &stock.points, Family::Level, &up, sight, random);
     let mut levels: Vec<Support> = Vec::new();
-    for facet in facets(cloud, &stock.points, Family::Level, &up, sight, random) {
-        let [long, short] = facet.size(sight);
-        let faces_up = facet.plane.normal().dot(&up) > 0.0 || sight.eye.is_none();
-        if long < LARGE || short < DEEP || !faces_up {
-            continue;
-        }
+    for facet in &flat {
         let middle = facet.middle();
         let differs = |other: &Support| other.plane.height(&middle).abs() > STEP;
-        if !differs(support) || !levels.iter().all(differs) {
-            continue;
-        }
-        if stock.is_vast(&facet) || is_open(cloud, &facet) {
+        let long = facet.size(sight)[0];
+        let is_level = facet.faces(&up, sight)
+            && differs(support)
+            && levels.iter().all(differs)
+            && (long > LARGE && stock.is_vast(facet) || long > BOARD && is_board(cloud, facet));
+        if is_level {
             let found = refine(cloud, &facet.points, &facet.plane, sight, random);
             levels.extend(found.map(|level| level.upwards(&up)));
         }
     }
-    levels
-}
-
-/// Whether the eye sees beneath a facet: not just beside it, but past it under its middle.
-fn is_open(cloud: &PointCloud, facet: &Facet) -> bool {
-    let ground = Ground::of(&facet.plane);
-    let cell = |[x, y]: Spot| [(x / CELL).floor() as i64, (y / CELL).floor() as i64];
-    let place = |p: &Point| cell(ground.spot(p));
-    let point = |i: &u32| cloud.points.get(*i as usize);
-    let own: BTreeSet<[i64; 2]> = facet.points.iter().filter_map(point).map(place).collect();
-    let is_inner =
-        |[x, y]: &[i64; 2]| (-1..=1).all(|dx| (-1..=1).all(|dy| own.contains(&[x + dx, y + dy])));
-    let inner: BTreeSet<[i64; 2]> = own.iter().filter(|c| is_inner(c)).copied().collect();
-    let beneath = |p: &&Point| seen(p) && facet.plane.height(p) < -CLEAR;
-    let some = cloud.points.iter().step_by(3).filter(beneath);
-    let seen: BTreeSet<[i64; 2]> = some.map(place).filter(|c| inner.contains(c)).collect();
-    !inner.is_empty() && seen.len() as f64 > OPEN * inner.len() as f64
-}
-
-/// The upright facets that are walls.
-fn walls(
-    cloud: &PointCloud,
-    stock: &Stock,
-    support: &Support,
-    sight: &Sight,
-    random: &mut Stream,
-) -> Vec<Wall> {
-    let up = support.plane.normal();
-    let found = facets(cloud, &stock.points, Family::Upright, &up, sight, random);
-    let tall: Vec<(Wall, bool)> = found
-        .into_iter()
-        .map(|facet| (stock.is_vast(&facet), facet))
-        .map(|(vast, facet)| (Wall::new(cloud, &stock.points, facet, support, sight), vast))
-        .filter(|(wall, _)| wall.heights[1] - wall.heights[0] > TALL)
-        .filter(|(wall, vast)| *vast || !wall.is_face(cloud, &stock.points, support))
-        .collect();
+    let upright = facets(cloud, &stock.points, Family::Upright, &up, sight, random);
+    let mut tall: Vec<(Wall, bool)> = Vec::new();
+    for facet in upright {
+        let vast = stock.is_vast(&facet);
+        let wall = Wall::new(cloud, &stock.points, facet, support, sight);
+        let rise = wall.heights[1] - wall.heights[0];
+        if rise > TALL && (vast || !flat.iter().any(|top| wall.carries(top, cloud, support))) {
+            tall.push((wall, vast));
+        }
+    }
     let is_sure = |(wall, vast): &(Wall, bool)| {
+        let long = wall.facet.size(sight)[0];
         let enclosed = || tall.iter().any(|(other, _)| wall.encloses(other));
-        wall.facet.size(sight)[0] > LARGE && (*vast || sight.eye.is_some() && enclosed())
+        long > LARGE && (*vast || sight.eye.is_some() && enclosed())
+            || levels.iter().any(|level| wall.backs(level, long))
     };
     let (sure, maybe): (Vec<_>, Vec<_>) = tall.iter().cloned().partition(is_sure);
     let mut walls: Vec<Wall> = sure.into_iter().map(|(wall, _)| wall).collect();
@@ -200,7 +168,78 @@ fn walls(
         sides = rest;
         known += 1;
     }
-    walls
+    let mut floors: Vec<Support> = Vec::new();
+    for facet in &flat {
+        let middle = facet.middle();
+        let low = support.plane.height(&middle);
+        let bound = || walls.iter().filter(|wall| wall.bounds(facet)).map(Wall::length);
+        let longest = bound().fold(0.0, f64::max);
+        let is_floor = facet.faces(&up, sight)
+            && (LOW..STEP).contains(&low)
+            && floors.is_empty()
+            && bound().count() > 1
+            && facet.size(sight)[0] > BACK * longest;
+        if is_floor {
+            let found = refine(cloud, &facet.points, &facet.plane, sight, random);
+            floors.extend(found.map(|level| level.upwards(&up)));
+        }
+    }
+    levels.extend(floors);
+    Room { levels, walls }
+}
+
+impl Facet {
+    /// Whether it is wide and faces up.
+    fn faces(&self, up: &Direction, sight: &Sight) -> bool {
+        let faces_up = self.plane.normal().dot(up) > 0.0 || sight.eye.is_none();
+        faces_up && 2.0 * self.rectangle.half[1] > DEEP
+    }
+}
+
+/// Whether a facet is the top of a board: the eye sees beneath it, past it under its middle and not just beside it,
+/// and its edge is no taller than a board's.
+fn is_board(cloud: &PointCloud, facet: &Facet) -> bool {
+    let ground = Ground::of(&facet.plane);
+    let cell = |[x, y]: Spot| [(x / CELL).floor() as i64, (y / CELL).floor() as i64];
+    let own = facet.points.iter().filter_map(|i| cloud.points.get(*i as usize));
+    let own: BTreeSet<[i64; 2]> = own.map(|p| cell(ground.spot(p))).collect();
+    let is_inner =
+        |[x, y]: &[i64; 2]| (-1..=1).all(|dx| (-1..=1).all(|dy| own.contains(&[x + dx, y + dy])));
+    let inner: BTreeSet<[i64; 2]> = own.iter().filter(|c| is_inner(c)).copied().collect();
+    let (mut under, mut edge, mut face) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+    for p in cloud.points.iter().step_by(2).filter(|p| seen(p)) {
+        let height = facet.plane.height(p);
+        if height > -FACE[1] {
+            continue;
+        }
+        let spot = ground.spot(p);
+        if height < -CLEAR && inner.contains(&cell(spot)) {
+            under.insert(cell(spot));
+        }
+        if facet.outline.depth(&spot).abs() < BESIDE {
+            if height > -THICK {
+                edge.insert(cell(spot));
+            } else if height < -CLEAR && height > -FACE[0] {
+                face.insert(cell(spot));
+            }
+        }
+    }
+    under.len() as f64 > OPEN * inner.len() as f64
+        && 2 * edge.intersection(&face).count() <= edge.len()
+}
+
+/// The outline of an upright facet down to the support: what hides its foot does not end it.
+fn grounded(facet: &Facet, support: &Support) -> Outline {
+    let (up, normal) = (support.plane.normal(), facet.plane.normal());
+    let down = normal.into_inner() * normal.dot(&up) - up.into_inner();
+    let ground = Ground::of(&facet.plane);
+    let mut spots = facet.outline.corners().to_vec();
+    for corner in facet.outline.corners() {
+        let corner = spot_on(&facet.plane, corner);
+        let foot = corner + down * (support.plane.height(&corner) / down.norm_squared());
+        spots.push(ground.spot(&foot));
+    }
+    Outline::around(&mut spots)
 }
 
 impl Wall {
@@ -212,6 +251,7 @@ impl Wall {
         sight: &Sight,
     ) -> Self {
         let (ground, eye) = (Ground::of(&facet.plane), facet.middle());
+        facet.outline = grounded(&facet, support);
         let is_within = |i: &u32| {
             cloud.points.get(*i as usize).is_some_and(|p| {
                 facet.outline.depth(&ground.spot(p)) > -EDGE
@@ -227,30 +267,49 @@ impl Wall {
         Self { facet, heights, sample }
     }
 
-    /// Whether it is the face of a body, whose top goes on behind it.
-    fn is_face(&self, cloud: &PointCloud, indices: &[u32], support: &Support) -> bool {
-        let plane = &self.facet.plane;
-        let along = support.plane.normal().cross(&plane.normal());
-        let cell = |p: &Point| (along.dot(&p.coords) / CELL).floor() as i64;
-        let own: BTreeSet<i64> = self.sample.iter().map(cell).collect();
-        let behind = |p: &&Point| {
-            let depth = -plane.height(p);
-            depth > THICK
-                && depth < 3.0 * THICK
-                && (support.plane.height(p) - self.heights[1]).abs() < RIM
-        };
-        let points = indices.iter().filter_map(|i| cloud.points.get(*i as usize));
-        let top: BTreeSet<i64> =
-            points.filter(behind).map(cell).filter(|c| own.contains(c)).collect();
-        top.len() as f64 > CARRIES * own.len() as f64
+    /// Whether it is the face of a body: whether a level facet, its top, goes on behind it.
+    fn carries(&self, top: &Facet, cloud: &PointCloud, support: &Support) -> bool {
+        let middle = top.middle();
+        let step = top.points.len().div_ceil(500).max(1);
+        let some = top.points.iter().step_by(step).filter_map(|i| cloud.points.get(*i as usize));
+        (support.plane.height(&middle) - self.heights[1]).abs() < RIM
+            && self.facet.plane.height(&middle) < -THICK
+            && self.is_near(some)
+    }
+
+    /// Whether it is the back of a board: rises from behind its middle and is as long, nearly.
+    fn backs(&self, level: &Support, long: f64) -> bool {
+        let Some(board) = level.board() else { return false };
+        let foot = self.sample.iter().map(|p| level.plane.height(p)).fold(f64::MAX, f64::min);
+        let middle = board.pose().translation.vector.into();
+        long > BACK * 2.0 * board.half_extents()[0]
+            && foot.abs() < CORNER
+            && self.facet.plane.height(&middle) > 0.0
+            && self.is_near(&level.corners())
     }
 
     /// Whether it meets another wall.
     fn touches(&self, other: &Self) -> bool {
-        let near =
-            |p: &Point| other.sample.iter().any(|q| (p - q).norm_squared() < CORNER * CORNER);
         let normals = self.facet.plane.normal().dot(&other.facet.plane.normal());
-        normals.abs() < SQUARE && self.sample.iter().any(near)
+        normals.abs() < SQUARE && self.is_near(&other.sample)
+    }
+
+    /// Whether it rises from the edge of a level facet.
+    fn bounds(&self, level: &Facet) -> bool {
+        let corners = level.outline.corners().iter().map(|s| spot_on(&level.plane, s));
+        let rises = self.sample.iter().any(|p| level.plane.height(p) > TALL);
+        rises && self.is_near(&corners.collect::<Vec<Point>>())
+    }
+
+    /// Its length, in metres.
+    fn length(&self) -> f64 {
+        2.0 * self.facet.rectangle.half[0]
+    }
+
+    /// Whether one of some points is near.
+    fn is_near<'a>(&self, points: impl IntoIterator<Item = &'a Point>) -> bool {
+        let near = |p: &Point| self.sample.iter().any(|q| (p - q).norm_squared() < CORNER * CORNER);
+        points.into_iter().any(near)
     }
 
     /// Whether it meets another wall in a corner that opens towards the eye.
@@ -266,8 +325,10 @@ impl Wall {
         (self.heights[1] - other.heights[1]).abs() < CORNER && self.touches(other)
     }
 
-    /// Whether a point lies in its thickness.
-    pub(crate) fn holds(&self, p: &Point) -> bool {
-        is_part(p, &self.facet.plane, &self.facet.outline)
+    /// Whether a point lies in its thickness, or on its rim.
+    pub(crate) fn holds(&self, p: &Point, support: &Support) -> bool {
+        let rim = (support.plane.height(p) - self.heights[1]).abs() < RIM;
+        let beside = if rim { 2.0 * CORNER } else { SIDE };
+        is_part(p, &self.facet.plane, &self.facet.outline, beside)
     }
 }

@@ -9,17 +9,17 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 /// How far behind its face, and beside it, what belongs to a wall or a board lies, in metres: its rim, its edge.
 pub(crate) const THICK: f64 = 0.035;
-const BESIDE: f64 = 0.03;
+pub(crate) const SIDE: f64 = 0.03;
 
-/// Whether a point lies in the thickness of a facet.
-pub(crate) fn is_part(p: &Point, plane: &Plane, outline: &Outline) -> bool {
+/// Whether a point lies in the thickness of a facet, at most so far beside its outline.
+pub(crate) fn is_part(p: &Point, plane: &Plane, outline: &Outline, beside: f64) -> bool {
     let height = plane.height(p);
-    height > -THICK && height < 0.5 * THICK && is_over(p, plane, outline)
+    height > -THICK && height < 0.5 * THICK && outline.depth(&Ground::of(plane).spot(p)) > -beside
 }
 
 /// Whether the foot of a point on a plane is within an outline, or nearly.
 pub(crate) fn is_over(p: &Point, plane: &Plane, outline: &Outline) -> bool {
-    outline.depth(&Ground::of(plane).spot(p)) > -BESIDE
+    outline.depth(&Ground::of(plane).spot(p)) > -SIDE
 }
 
 impl Support {

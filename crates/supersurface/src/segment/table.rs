@@ -96,6 +96,8 @@ const FINE_SAMPLE: usize = 20_000;
 const COARSE_SAMPLE: usize = 5000;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
+/// Depth inside its outline at which something is on it, in metres.
+const EDGE: f64 = 0.01;
 /// Gap that things on the support may make in what is seen of it, in metres.
 const OBJECT_GAP: f64 = 0.25;
 
@@ -132,6 +134,13 @@ impl Support {
         } else {
             Class::Other
         }
+    }
+
+    /// Share of some points that is over the part of it that was seen.
+    pub(crate) fn share_over<'a>(&self, points: impl Iterator<Item = &'a Point> + Clone) -> f64 {
+        let ground = Ground::of(&self.plane);
+        let inside = |p: &&Point| self.outline.depth(&ground.spot(p)) > EDGE;
+        points.clone().filter(inside).count() as f64 / points.count().max(1) as f64
     }
 
     /// The same with its normal on the side of `up`.

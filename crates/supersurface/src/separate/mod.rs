@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 pub(crate) use bodies::Around;
 
-use crate::cloud::{PointCloud, Sets};
+use crate::cloud::{PointCloud, Sets, VoxelGrid};
 use crate::fit::{Fit, FitError, FitOptions};
 use crate::segment::{DropReason, Dropped, Frame, Raster, Segmentation, Support};
 use clump::clumped;
@@ -27,6 +27,10 @@ use view::View;
 
 /// The least noise that is reckoned with, in metres: bodies are no superellipsoids to the last digit.
 const LEAST_NOISE: f64 = 0.0004;
+
+/// Share over its support up to which a thing may be part of what stands beside it, and the seam between, in metres.
+const OVER: f64 = 0.05;
+const SEAM: f64 = 0.03;
 
 /// Why pieces between concave edges are one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,15 +133,25 @@ pub fn separate(
     things.sort_by_key(|(thing, _)| thing.points.first().copied());
     let left = left_over(&segmentation.objects, &things, cloud.points.len());
     let frame = Frame::of(cloud);
-    let is_cut = |(thing, _): &(Thing, usize)| frame.is_some_and(|f| f.cuts(&thing.points));
-    let (cut, things): (Vec<_>, Vec<_>) = things.into_iter().partition(is_cut);
-    for (thing, k) in cut {
-        let (points, reason) = (thing.points, DropReason::CutOff);
-        segmentation.dropped.push(match segmentation.supports.get(k) {
-            Some(support) => Dropped::new(&cloud.points, points, reason, &support.plane),
-            None => Dropped { points, reason, bounds: None },
+    let beside = beside(&segmentation.dropped);
+    let why = |thing: &Thing, support: Option<&Support>| {
+        let cut = frame.is_some_and(|f| f.cuts(&thing.points));
+        let goes_on = || support.is_some_and(|s| goes_on(cloud, thing, s, &beside));
+        if cut { Some(DropReason::CutOff) } else { goes_on().then_some(DropReason::OffSupport) }
+    };
+    let mut kept = Vec::with_capacity(things.len());
+    for (thing, k) in things {
+        let support = segmentation.supports.get(k);
+        let Some(reason) = why(&thing, support) else {
+            kept.push((thing, k));
+            continue;
+        };
+        segmentation.dropped.push(match support {
+            Some(support) => Dropped::new(&cloud.points, thing.points, reason, &support.plane),
+            None => Dropped { points: thing.points, reason, bounds: None },
         });
     }
+    let things = kept;
     if !left.is_empty() {
         segmentation.dropped.push(Dropped {
             points: left,
@@ -148,6 +162,26 @@ pub fn separate(
     segmentation.objects = things.iter().map(|(thing, _)| thing.points.clone()).collect();
     segmentation.stands_on = things.iter().map(|(_, k)| *k).collect();
     things.into_iter().map(|(thing, _)| thing).collect()
+}
+
+/// The points of what stands beside the supports.
+fn beside(dropped: &[Dropped]) -> Vec<u32> {
+    let off = dropped.iter().filter(|d| d.reason == DropReason::OffSupport);
+    off.flat_map(|d| &d.points).copied().collect()
+}
+
+/// Whether a thing goes on in what stands beside its support, and is itself hardly over it.
+fn goes_on(cloud: &PointCloud, thing: &Thing, support: &Support, beside: &[u32]) -> bool {
+    let points = || thing.points.iter().filter_map(|i| cloud.points.get(*i as usize)).step_by(8);
+    if beside.is_empty() || support.share_over(points()) > OVER {
+        return false;
+    }
+    let grid = VoxelGrid::new(&cloud.points, beside.iter().copied(), SEAM);
+    grid.is_some_and(|grid| {
+        let mut near = 0;
+        points().for_each(|p| grid.within(p, SEAM, |_, _| near += 1));
+        near > 0
+    })
 }
 
 /// The objects that the clumps on one support consist of.
