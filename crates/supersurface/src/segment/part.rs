@@ -53,10 +53,8 @@ pub(crate) fn part(
             let step = piece.len().div_ceil(SOME).max(1);
             let some = piece.iter().step_by(step);
             let some: Vec<Point> = some.map(|i| cloud.points[*i as usize]).collect();
-            let owners: Vec<usize> = some
-                .iter()
-                .filter_map(|p| walls.iter().position(|w| w.holds(p, &supports[0])))
-                .collect();
+            let owners: Vec<usize> =
+                some.iter().filter_map(|p| walls.iter().position(|w| w.holds(p))).collect();
             if owners.len() as f64 > PART * some.len() as f64 {
                 solid[most(&owners, walls.len())].extend(piece);
                 continue;

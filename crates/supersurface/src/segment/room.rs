@@ -37,8 +37,8 @@ const CLEAR: f64 = 0.045;
 /// metres.
 const FACE: [f64; 2] = [0.08, 0.005];
 const BESIDE: f64 = 0.02;
-/// How far beside its outline a wall goes on where its readings have no normal, in metres.
-const EDGE: f64 = 0.01;
+/// How far beside its outline a facet goes on where its readings have no normal of their own, in metres.
+const EDGE: f64 = 0.02;
 /// Walls that meet in a corner: how far apart they and their tops may be, in metres, and the cosine of their normals.
 const CORNER: f64 = 0.05;
 const SQUARE: f64 = 0.5;
@@ -137,7 +137,8 @@ pub(crate) fn furnish(
             && levels.iter().all(differs)
             && (long > LARGE && stock.is_vast(facet) || long > BOARD && is_board(cloud, facet));
         if is_level {
-            let found = refine(cloud, &facet.points, &facet.plane, sight, random);
+            let own = within(cloud, &stock.points, facet, sight);
+            let found = refine(cloud, &own, &facet.plane, sight, random);
             levels.extend(found.map(|level| level.upwards(&up)));
         }
     }
@@ -180,11 +181,13 @@ pub(crate) fn furnish(
             && bound().count() > 1
             && facet.size(sight)[0] > BACK * longest;
         if is_floor {
-            let found = refine(cloud, &facet.points, &facet.plane, sight, random);
+            let own = within(cloud, &stock.points, facet, sight);
+            let found = refine(cloud, &own, &facet.plane, sight, random);
             floors.extend(found.map(|level| level.upwards(&up)));
         }
     }
     levels.extend(floors);
+    walls.iter_mut().for_each(|wall| wall.add_rim(cloud, &stock.points, support));
     Room { levels, walls }
 }
 
@@ -228,6 +231,17 @@ fn is_board(cloud: &PointCloud, facet: &Facet) -> bool {
         && 2 * edge.intersection(&face).count() <= edge.len()
 }
 
+/// The readings in the plane of a facet, up to its edges.
+fn within(cloud: &PointCloud, indices: &[u32], facet: &Facet, sight: &Sight) -> Vec<u32> {
+    let (ground, eye) = (Ground::of(&facet.plane), facet.middle());
+    let is_within = |i: &u32| {
+        let near = |p: &Point| facet.outline.depth(&ground.spot(p)) > -EDGE;
+        cloud.points.get(*i as usize).is_some_and(near)
+            && lies_in(cloud, *i, &facet.plane, sight, &eye)
+    };
+    indices.iter().copied().filter(is_within).collect()
+}
+
 /// The outline of an upright facet down to the support: what hides its foot does not end it.
 fn grounded(facet: &Facet, support: &Support) -> Outline {
     let (up, normal) = (support.plane.normal(), facet.plane.normal());
@@ -250,15 +264,8 @@ impl Wall {
         support: &Support,
         sight: &Sight,
     ) -> Self {
-        let (ground, eye) = (Ground::of(&facet.plane), facet.middle());
         facet.outline = grounded(&facet, support);
-        let is_within = |i: &u32| {
-            cloud.points.get(*i as usize).is_some_and(|p| {
-                facet.outline.depth(&ground.spot(p)) > -EDGE
-                    && lies_in(cloud, *i, &facet.plane, sight, &eye)
-            })
-        };
-        facet.points = indices.iter().copied().filter(is_within).collect();
+        facet.points = within(cloud, indices, &facet, sight);
         let step = facet.points.len().div_ceil(500).max(1);
         let some = facet.points.iter().step_by(step).filter_map(|i| cloud.points.get(*i as usize));
         let sample: Vec<Point> = some.copied().collect();
@@ -283,7 +290,7 @@ impl Wall {
         let foot = self.sample.iter().map(|p| level.plane.height(p)).fold(f64::MAX, f64::min);
         let middle = board.pose().translation.vector.into();
         long > BACK * 2.0 * board.half_extents()[0]
-            && foot.abs() < CORNER
+            && foot < CORNER
             && self.facet.plane.height(&middle) > 0.0
             && self.is_near(&level.corners())
     }
@@ -325,10 +332,24 @@ impl Wall {
         (self.heights[1] - other.heights[1]).abs() < CORNER && self.touches(other)
     }
 
-    /// Whether a point lies in its thickness, or on its rim.
-    pub(crate) fn holds(&self, p: &Point, support: &Support) -> bool {
-        let rim = (support.plane.height(p) - self.heights[1]).abs() < RIM;
-        let beside = if rim { 2.0 * CORNER } else { SIDE };
-        is_part(p, &self.facet.plane, &self.facet.outline, beside)
+    /// Adds the readings of its rim.
+    fn add_rim(&mut self, cloud: &PointCloud, indices: &[u32], support: &Support) {
+        let point = |i: &u32| cloud.points.get(*i as usize);
+        let is_rim = |i: &&u32| point(i).is_some_and(|p| self.is_rim(p, support));
+        let rim: Vec<u32> = indices.iter().filter(is_rim).copied().collect();
+        self.facet.points.extend(rim);
+        self.facet.points.sort_unstable();
+        self.facet.points.dedup();
+    }
+
+    /// Whether a point lies on its rim, which what stands before it may hide from the rest.
+    fn is_rim(&self, p: &Point, support: &Support) -> bool {
+        (support.plane.height(p) - self.heights[1]).abs() < RIM
+            && is_part(p, &self.facet.plane, &self.facet.outline, 2.0 * CORNER)
+    }
+
+    /// Whether a point lies in its thickness.
+    pub(crate) fn holds(&self, p: &Point) -> bool {
+        is_part(p, &self.facet.plane, &self.facet.outline, SIDE)
     }
 }
