@@ -14,10 +14,13 @@ use crate::{Direction, Point};
 
 /// Length of a facet at least, in metres.
 const LEAST: f64 = 0.12;
-/// Readings that the search sees, planes that it looks for, patches of each, and readings without which it does not
-/// begin.
-const SAMPLE: usize = 4000;
+/// Readings that the search sees, samples of three that it tries for a plane, planes that it looks for and patches of
+/// each.
+const SAMPLE: usize = 1500;
+const TRIALS: usize = 80;
 const MOST: usize = 8;
+/// Readings of which patches are made, at most, nearly, and without which there are none.
+const DENSE: usize = 20_000;
 const FEWEST: usize = 400;
 /// Gap that parts two patches of a plane, in metres.
 const GAP: f64 = 0.05;
@@ -75,30 +78,35 @@ pub(crate) fn facets(
     random: &mut Stream,
 ) -> Vec<Facet> {
     let rough = Rough::of(cloud, sight);
-    // what faces another way is in no such plane
-    let fits = |i: &&u32| {
-        let agrees = |n: &Direction| (up.dot(n).abs() > ALIKE) == (family == Family::Level);
-        rough.as_ref().is_none_or(|rough| rough.normal(**i).is_some_and(|n| agrees(&n)))
+    let normal = |i: u32| match &rough {
+        Some(rough) => rough.normal(i).map(Some),
+        None => Some(None),
     };
-    let free: Vec<u32> = indices.iter().filter(fits).copied().collect();
+    // what faces another way is in no such plane
+    let agrees = |n: &Direction| (up.dot(n).abs() > ALIKE) == (family == Family::Level);
+    let thin = indices.iter().step_by(indices.len() / DENSE + 1);
+    let free: Vec<(u32, Option<Direction>)> = thin
+        .filter_map(|i| Some((*i, normal(*i)?)))
+        .filter(|(_, n)| n.is_none_or(|n| agrees(&n)))
+        .collect();
     if free.len() < FEWEST {
         return Vec::new();
     }
-    let sample = spread(&free, SAMPLE, random);
+    let named: Vec<u32> = free.iter().map(|(i, _)| *i).collect();
+    let sample = spread(&named, SAMPLE, random);
     let all = readings(cloud, &sample, sight);
     let first = sample.first().and_then(|i| cloud.points.get(*i as usize)).zip(all.first());
     let Some(eye) = first.map(|(p, r)| p - r.ray) else { return Vec::new() };
-    let found = dominant(&all, MOST, random, |n| family.has(n, up));
+    let found = dominant(&all, MOST, TRIALS, random, |n| family.has(n, up));
     let planes = found.iter().filter_map(|c: &Candidate| c.plane(&eye.coords));
     planes
         .filter(|plane| family.has(&plane.normal(), up))
         .flat_map(|plane| {
-            let alike = |i: u32| {
-                let normal = || rough.as_ref()?.normal(i);
-                normal().is_none_or(|n| n.dot(&plane.normal()).abs() > ALIKE)
+            let on = |(i, n): &&(u32, Option<Direction>)| {
+                n.is_none_or(|n| n.dot(&plane.normal()).abs() > ALIKE)
+                    && lies_in(cloud, *i, &plane, sight, &eye)
             };
-            let on = |i: &u32| lies_in(cloud, *i, &plane, sight, &eye) && alike(*i);
-            let near: Vec<u32> = free.iter().copied().filter(on).collect();
+            let near: Vec<u32> = free.iter().filter(on).map(|(i, _)| *i).collect();
             patches(cloud, &near, &plane)
         })
         .collect()

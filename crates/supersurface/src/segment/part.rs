@@ -3,6 +3,7 @@
 use crate::Point;
 use crate::cloud::PointCloud;
 use crate::segment::clusters::{Class, pieces};
+use crate::segment::footprint::Ground;
 use crate::segment::image::Image;
 use crate::segment::objects::gather;
 use crate::segment::room::{Room, Stock, furnish};
@@ -39,9 +40,11 @@ pub(crate) fn part(
         vec![all]
     } else {
         let mut solid: Vec<Vec<u32>> = walls.iter().map(|w| w.facet.points.clone()).collect();
-        let below: Vec<u32> = cloud.points.iter().map(|p| standing(p, &supports)).collect();
+        let below = standing(&cloud.points, &supports);
         for ((class, p), k) in class.iter_mut().zip(&cloud.points).zip(&below) {
-            *class = supports[*k as usize].class(p, sight, options);
+            if *k > 0 {
+                *class = supports[*k as usize].class(p, sight, options);
+            }
         }
         let mut is_free = vec![true; class.len()];
         for points in &mut solid {
@@ -91,13 +94,22 @@ pub(crate) fn part(
     Segmentation { supports, objects, stands_on, dropped, image: None }
 }
 
-/// The support that a point is over: the highest beneath it that was seen there, else the first beneath it.
-fn standing(p: &Point, supports: &[Support]) -> u32 {
-    let heights = supports.iter().zip(0u32..).map(|(s, k)| (s, k, s.plane.height(p)));
-    let beneath = heights.filter(|(_, _, h)| *h > -SLACK);
-    let under = beneath.clone().filter(|(s, _, _)| is_over(p, &s.plane, &s.outline));
-    let nearest = under.min_by(|a, b| a.2.total_cmp(&b.2));
-    nearest.or_else(|| beneath.min_by_key(|(_, k, _)| *k)).map_or(0, |(_, k, _)| k)
+/// The support that each point is over: the highest beneath it that was seen there, else the first beneath it.
+fn standing(points: &[Point], supports: &[Support]) -> Vec<u32> {
+    let grounds: Vec<Ground> = supports.iter().map(|s| Ground::of(&s.plane)).collect();
+    let of = |p: &Point| {
+        let heights = supports.iter().zip(&grounds).zip(0u32..).map(|((s, ground), k)| {
+            let height = s.plane.height(p);
+            (height, k, height > -SLACK && s.outline.depth(&ground.spot(p)) > -SIDE)
+        });
+        let under = heights.clone().filter(|(_, _, over)| *over);
+        let nearest = under.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.or_else(|| heights.clone().find(|(h, _, _)| *h > -SLACK)).map_or(0, |(_, k, _)| k)
+    };
+    match supports.len() {
+        1 => vec![0; points.len()],
+        _ => points.iter().map(of).collect(),
+    }
 }
 
 /// The value that comes most often; of several, the least. 0 for none.

@@ -94,10 +94,11 @@ pub(crate) fn readings(cloud: &PointCloud, sample: &[u32], sight: &Sight) -> Vec
 }
 
 /// The planes that hold the most readings, each with those that no earlier plane holds, until one
-/// holds under 3 % of all or `most` are found. Only normals that `allowed` lets pass are tried.
+/// holds under 3 % of all or `most` are found, each by so many `trials`. Only normals that `allowed` lets pass are tried.
 pub(crate) fn dominant(
     all: &[Reading],
     most: usize,
+    trials: usize,
     random: &mut Stream,
     allowed: impl Fn(&Direction) -> bool,
 ) -> Vec<Candidate> {
@@ -105,7 +106,7 @@ pub(crate) fn dominant(
     let least = (all.len() / 33).max(20);
     let mut planes = Vec::new();
     while planes.len() < most && free.len() >= least {
-        let Some(found) = best(all, &free, random, &allowed) else { break };
+        let Some(found) = best(all, &free, trials, random, &allowed) else { break };
         if found.members.len() < least {
             break;
         }
@@ -118,20 +119,22 @@ pub(crate) fn dominant(
     planes
 }
 
-/// Samples tried for one plane, and readings on which they are scored.
-const TRIALS: usize = 240;
+/// Samples that find a plane among much else.
+pub(crate) const TRIALS: usize = 240;
+/// Readings on which they are scored.
 const JURY: usize = 1500;
 
 /// The plane that most of the free readings agree with.
 fn best(
     all: &[Reading],
     free: &[u32],
+    trials: usize,
     random: &mut Stream,
     allowed: impl Fn(&Direction) -> bool,
 ) -> Option<Candidate> {
     let jury: Vec<Reading> = spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
     let mut best: Option<(f64, Direction, f64)> = None;
-    for trial in 0..TRIALS {
+    for trial in 0..trials {
         let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
         if !allowed(&normal) {
             continue;
@@ -242,7 +245,8 @@ mod tests {
             PointCloud { viewpoint: Some(Point::origin()), ..PointCloud::from_points(points) };
         let indices: Vec<u32> = (0..6000).collect();
         let sight = Sight::of(&cloud, &indices);
-        let planes = dominant(&readings(&cloud, &indices, &sight), 4, &mut random, |_| true);
+        let planes =
+            dominant(&readings(&cloud, &indices, &sight), 4, TRIALS, &mut random, |_| true);
         assert_eq!(planes.len(), 2);
         assert!(planes[0].members.len() > 3800);
         let table = Vector::new(0.0, -0.7, -0.5).normalize();

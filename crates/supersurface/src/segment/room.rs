@@ -18,6 +18,7 @@ use crate::segment::table::{Support, refine};
 use crate::{Direction, Point};
 
 /// Size of a piece in which furniture is looked for, and length of a facet of it, at least, in metres.
+const SPACIOUS: f64 = 0.5;
 const LARGE: f64 = 0.4;
 /// Length of a board that the eye sees beneath, at least, in metres.
 const BOARD: f64 = 0.25;
@@ -90,14 +91,14 @@ impl Stock {
         let mut stock = Self::default();
         for piece in pieces {
             let size = size(piece);
-            if size > LARGE {
+            if size > SPACIOUS {
                 stock.points.extend(piece);
             }
             if size > options.largest_size {
                 stock.vast.extend(piece);
             }
         }
-        let beneath = |p: &Point| seen(p) && support.plane.height(p) < -BENEATH;
+        let beneath = |p: &Point| support.plane.height(p) < -BENEATH && seen(p);
         let beneath = cloud.points.iter().zip(0u32..).filter(|(p, _)| beneath(p)).map(|(_, i)| i);
         for i in beneath {
             stock.points.push(i);

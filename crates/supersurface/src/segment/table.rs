@@ -11,7 +11,7 @@ use crate::segment::SegmentOptions;
 use crate::segment::clusters::Class;
 use crate::segment::footprint::{Ground, Outline, Spot, spot_on};
 use crate::segment::planes::{
-    Candidate, Reading, dominant, height, least_squares, readings, spread,
+    Candidate, Reading, TRIALS, dominant, height, least_squares, readings, spread,
 };
 use crate::segment::sight::{Sight, seen};
 use crate::shape::Plane;
@@ -176,7 +176,7 @@ pub(crate) fn find(
     let sample = spread(indices, SAMPLE, random);
     let sight = Sight::of(cloud, &sample);
     let all = readings(cloud, &sample, &sight);
-    let mut planes = dominant(&all, 6, random, |_| true);
+    let mut planes = dominant(&all, 6, TRIALS, random, |_| true);
     planes.sort_by_key(|c| std::cmp::Reverse(c.members.len()));
     // From the eye's frame to the cloud's.
     let origin =
