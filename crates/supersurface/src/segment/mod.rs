@@ -6,6 +6,7 @@
 //!
 //! Objects that touch are one clump, which [`separate`](crate::separate) cuts.
 
+mod boards;
 mod clusters;
 mod convexity;
 mod facets;
@@ -23,6 +24,7 @@ mod room;
 mod sight;
 mod solids;
 mod table;
+mod walls;
 
 pub use convexity::convex_pieces;
 pub(crate) use frame::Frame;

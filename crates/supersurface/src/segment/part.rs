@@ -6,10 +6,11 @@ use crate::segment::clusters::{Class, pieces};
 use crate::segment::footprint::Ground;
 use crate::segment::image::Image;
 use crate::segment::objects::gather;
-use crate::segment::room::{Room, Stock, furnish};
+use crate::segment::room::{Room, Scene, Stock, furnish};
 use crate::segment::sight::{Sight, grid};
 use crate::segment::solids::{SIDE, THICK, is_over, is_part};
 use crate::segment::table::Support;
+use crate::segment::walls::Wall;
 use crate::segment::{DropReason, Dropped, SegmentOptions, Segmentation};
 
 /// Depth beneath a support at which a point may still be its own, in metres.
@@ -33,51 +34,22 @@ pub(crate) fn part(
         cloud.points.iter().map(|p| main.class(p, sight, options)).collect();
     let all = pieces(cloud, &class, sight, options.gap, LEAST);
     let stock = Stock::of(cloud, &all, &main, options);
-    let Room { levels, walls } = furnish(cloud, &stock, &main, sight, options);
+    let scene = Scene { cloud, stock: &stock, support: &main, sight };
+    let Room { levels, walls } = furnish(&scene, options);
     let supports: Vec<Support> = std::iter::once(main).chain(levels).collect();
-    let mut dropped = Vec::new();
-    let on = if supports.len() == 1 && walls.is_empty() {
-        vec![all]
+    let (on, mut dropped) = if supports.len() == 1 && walls.is_empty() {
+        (vec![all], Vec::new())
     } else {
-        let mut solid: Vec<Vec<u32>> = walls.iter().map(|w| w.facet.points.clone()).collect();
         let below = standing(&cloud.points, &supports);
         for ((class, p), k) in class.iter_mut().zip(&cloud.points).zip(&below) {
             if *k > 0 {
                 *class = supports[*k as usize].class(p, sight, options);
             }
         }
-        let mut is_free = vec![true; class.len()];
-        for points in &mut solid {
-            points.retain(|i| std::mem::take(&mut is_free[*i as usize]));
-            points.iter().for_each(|i| class[*i as usize] = Class::Other);
-        }
-        let mut on: Vec<Vec<Vec<u32>>> = vec![Vec::new(); supports.len()];
-        for piece in pieces(cloud, &class, sight, options.gap, LEAST) {
-            let step = piece.len().div_ceil(SOME).max(1);
-            let some = piece.iter().step_by(step);
-            let some: Vec<Point> = some.map(|i| cloud.points[*i as usize]).collect();
-            let owners: Vec<usize> =
-                some.iter().filter_map(|p| walls.iter().position(|w| w.holds(p))).collect();
-            if owners.len() as f64 > PART * some.len() as f64 {
-                solid[most(&owners, walls.len())].extend(piece);
-                continue;
-            }
-            let below: Vec<usize> = piece.iter().map(|i| below[*i as usize] as usize).collect();
-            let k = most(&below, supports.len());
-            let fixed = supports.iter().enumerate().any(|(j, s)| j != k && s.has_part(&some));
-            if fixed {
-                let (reason, plane) = (DropReason::Fixture, &supports[k].plane);
-                dropped.push(Dropped::new(&cloud.points, piece, reason, plane));
-            } else {
-                on[k].push(piece);
-            }
-        }
-        for (mut points, wall) in solid.into_iter().zip(&walls) {
-            points.sort_unstable();
-            let plane = &wall.facet.plane;
-            dropped.push(Dropped::new(&cloud.points, points, DropReason::Wall, plane));
-        }
-        on
+        let taken = walls.iter().flat_map(|wall| &wall.facet.points);
+        taken.for_each(|i| class[*i as usize] = Class::Other);
+        let pieces = pieces(cloud, &class, sight, options.gap, LEAST);
+        allot(cloud, pieces, &supports, &below, &walls)
     };
     let mut objects: Vec<(Vec<u32>, usize)> = Vec::new();
     for (k, (support, pieces)) in supports.iter().zip(on).enumerate() {
@@ -92,6 +64,48 @@ pub(crate) fn part(
     objects.sort_unstable_by_key(|(points, _)| points.first().copied());
     let (objects, stands_on) = objects.into_iter().unzip();
     Segmentation { supports, objects, stands_on, dropped, image: None }
+}
+
+/// The pieces on each support, and what is part of the room.
+fn allot(
+    cloud: &PointCloud,
+    pieces: Vec<Vec<u32>>,
+    supports: &[Support],
+    below: &[u32],
+    walls: &[Wall],
+) -> (Vec<Vec<Vec<u32>>>, Vec<Dropped>) {
+    let (mut on, mut dropped) = (vec![Vec::new(); supports.len()], Vec::new());
+    // where two walls meet the first has the points
+    let mut is_free = vec![true; cloud.points.len()];
+    let mut own = |wall: &Wall| -> Vec<u32> {
+        let mut points = wall.facet.points.clone();
+        points.retain(|i| std::mem::take(&mut is_free[*i as usize]));
+        points
+    };
+    let mut solid: Vec<Vec<u32>> = walls.iter().map(&mut own).collect();
+    for piece in pieces {
+        let some = piece.iter().step_by(piece.len().div_ceil(SOME).max(1));
+        let some: Vec<Point> = some.map(|i| cloud.points[*i as usize]).collect();
+        let owner = |p: &Point| walls.iter().position(|wall| wall.holds(p));
+        let owners: Vec<usize> = some.iter().filter_map(owner).collect();
+        if owners.len() as f64 > PART * some.len() as f64 {
+            solid[most(&owners, walls.len())].extend(piece);
+            continue;
+        }
+        let below: Vec<usize> = piece.iter().map(|i| below[*i as usize] as usize).collect();
+        let k = most(&below, supports.len());
+        if supports.iter().enumerate().any(|(j, s)| j != k && s.has_part(&some)) {
+            let (reason, plane) = (DropReason::Fixture, &supports[k].plane);
+            dropped.push(Dropped::new(&cloud.points, piece, reason, plane));
+        } else {
+            on[k].push(piece);
+        }
+    }
+    for (mut points, wall) in solid.into_iter().zip(walls) {
+        points.sort_unstable();
+        dropped.push(Dropped::new(&cloud.points, points, DropReason::Wall, &wall.facet.plane));
+    }
+    (on, dropped)
 }
 
 /// The support that each point is over: the highest beneath it that was seen there, else the first beneath it.
