@@ -140,6 +140,31 @@ mod tests {
         Pose::new(vector(), vector())
     }
 
+    #[test]
+    fn boxes_meet_where_nothing_parts_them() {
+        let cube = OrientedBox::new(Pose::identity(), [0.5; 3]).unwrap();
+        let at = |x: f64, y: f64| cube.moved(&Pose::translation(x, y, 0.0));
+        assert!(cube.meets(&cube) && cube.meets(&at(0.99, 0.99)) && !cube.meets(&at(1.01, 0.0)));
+        // turned by 45 degrees its edge reaches out to 0.707
+        let turned = |x: f64, y: f64| {
+            cube.moved(&Pose::new(
+                Vector::new(x, y, 0.0),
+                Vector::z() * std::f64::consts::FRAC_PI_4,
+            ))
+        };
+        assert!(cube.meets(&turned(1.2, 0.0)) && !cube.meets(&turned(1.21, 0.0)));
+        assert!(cube.meets(&turned(0.85, 0.85)) && !cube.meets(&turned(0.86, 0.86)));
+        // two rods that cross: only the product of their edges parts them
+        let rod = OrientedBox::new(Pose::identity(), [2.0, 0.1, 0.1]).unwrap();
+        let across = |z: f64| {
+            let about_z = Vector::z() * std::f64::consts::FRAC_PI_4;
+            rod.moved(&(Pose::translation(0.0, 0.0, z) * Pose::new(Vector::zeros(), about_z)))
+        };
+        assert!(rod.meets(&across(0.19)) && !rod.meets(&across(0.21)));
+        assert!(OrientedBox::new(Pose::identity(), [1.0, -1.0, 1.0]).is_err());
+        assert!(OrientedBox::new(Pose::identity(), [1.0, f64::NAN, 1.0]).is_err());
+    }
+
     /// No sample lies outside of either box, and some lie on every side of both.
     fn fits<S: Implicit + Parametric + SupportMap>(shape: S, pose: Pose) {
         let posed = Posed::new(shape, pose).unwrap();

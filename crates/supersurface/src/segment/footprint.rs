@@ -201,6 +201,19 @@ mod tests {
     }
 
     #[test]
+    fn rectangles_follow_the_longest_fit() {
+        let (sine, cosine) = 0.4f64.sin_cos();
+        let mut spots: Vec<Spot> = [[2.0, 1.0], [-2.0, 1.0], [-2.0, -1.0], [2.0, -1.0]]
+            .map(|[x, y]| [3.0 + cosine * x - sine * y, 1.0 + sine * x + cosine * y])
+            .to_vec();
+        let r = Outline::around(&mut spots).rectangle().unwrap();
+        assert!((r.half[0] - 2.0).abs() < 1e-12 && (r.half[1] - 1.0).abs() < 1e-12);
+        assert!((r.along[0] * sine - r.along[1] * cosine).abs() < 1e-12);
+        assert!((r.middle[0] - 3.0).abs() < 1e-12 && (r.middle[1] - 1.0).abs() < 1e-12);
+        assert!(Outline::around(&mut vec![[0.0, 0.0]]).rectangle().is_none());
+    }
+
+    #[test]
     fn points_and_lines_have_no_area() {
         for mut spots in [vec![], vec![[1.0, 2.0]; 5], vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]] {
             let outline = Outline::around(&mut spots);

@@ -26,6 +26,7 @@ mod jacobians;
 mod mesh;
 mod picture;
 mod pipeline;
+mod room;
 mod scene;
 mod segment;
 mod separate;

@@ -19,7 +19,7 @@ fn seen(things: Vec<Thing>, seed: u64) -> Report {
     run(&look_by([640, 480], &all, seed).0, &gripper(), &Options::default(), &mut |_| ()).unwrap()
 }
 
-fn gripper() -> Gripper {
+pub(crate) fn gripper() -> Gripper {
     let jaw = Jaw {
         max_opening: 0.08,
         min_opening: 0.0,
