@@ -1,8 +1,9 @@
 //! Floor 7: from a cloud to the table plane and what stands on it.
 //!
-//! [`segment`] finds the main support (a table, or the floor that things stand on), further ones above and below it, and
-//! walls; it takes the points above each support and parts them into clumps; [`segment_whole`] takes a cloud that is one object already, and
-//! [`segment_masks`] one whose objects are labelled. What was left out is listed with the reason.
+//! [`segment`] finds the main support (a table, or the floor that things stand on), further ones above and below it
+//! (boards, a desk), and walls; it takes the points above each support and parts them into clumps. [`segment_whole`] takes
+//! a cloud that is one object already, and [`segment_masks`] one whose objects are labelled. What was left out is listed
+//! with the reason, and with its box where a gripper must not meet it.
 //!
 //! Objects that touch are one clump, which [`separate`](crate::separate) cuts.
 
