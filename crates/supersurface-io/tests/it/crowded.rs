@@ -7,11 +7,14 @@ use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
 use supersurface::nalgebra::UnitQuaternion;
 use supersurface::numeric::random::Stream;
-use supersurface::scene::{Body, Crowd, DepthNoise, crowded, facing, household, look, visibility};
+use supersurface::scene::{
+    Body, Crowd, DepthNoise, Layout, arrange, crowded, draw, facing, household, look, turntable,
+    visibility,
+};
 use supersurface::segment::{SegmentOptions, segment};
 use supersurface::separate::separate;
 use supersurface::{Point, Vector};
-use supersurface_io::{ReadOptions, read};
+use supersurface_io::{ReadOptions, read, read_things};
 
 /// Labels from here on are parts of objects, ten an object; lesser ones are the table and the background.
 const FIRST: u32 = 20;
@@ -80,13 +83,17 @@ fn objects_that_touch_are_found() {
     assert!(sum[0] >= 81 && sum[1] == 0, "{} found, {} merged", sum[0], sum[1]);
 }
 
+fn realsense() -> Camera {
+    Camera::new([640, 480], [502.0, 502.0], [319.5, 239.5]).unwrap()
+}
+
 /// A table with 4 to 10 things that touch, as a RealSense sees it from 0.6 to 1 m away: packed for even seeds, else piled.
 fn crowd(seed: u64) -> (PointCloud, Vec<u32>, Vec<f64>) {
     let mut stream = Stream::new(seed, 99);
     let layout = if seed.is_multiple_of(2) { Crowd::Packed } else { Crowd::Pile };
     let things = household(4 + stream.index(7), seed).unwrap();
     let scene = crowded(&things, layout, [0.6, 0.6], seed).unwrap();
-    let camera = Camera::new([640, 480], [502.0, 502.0], [319.5, 239.5]).unwrap();
+    let camera = realsense();
     let target = Point::new(0.0, 0.0, 0.03);
     let turn = UnitQuaternion::from_euler_angles(
         0.0,
@@ -119,4 +126,27 @@ fn made_crowds_are_told_apart() {
     }
     println!("{} of {} found, {} merged", sum[0], sum[2], sum[1]);
     assert!(sum[2] > 300 && 100 * sum[0] >= 90 * sum[2], "{sum:?}");
+}
+
+/// Things on the boards of a shelf as a RealSense sees them: the objects found, found in a piece that is mostly another's, and
+/// all that show enough of themselves.
+fn on_a_shelf(seed: u64) -> [usize; 3] {
+    let things = draw(&read_things("household").unwrap(), 8, seed).unwrap();
+    let scene = arrange(things, Layout::Shelf, seed).unwrap();
+    let camera = realsense();
+    let pose = turntable(&scene, &camera, 1)[0];
+    let seen = look(&scene, &camera, &pose, &DepthNoise::realsense(), seed);
+    let shown = visibility(&scene, &camera, &pose);
+    let object_of = |i: usize| (seen.labels[i] > 0).then_some(seen.labels[i]);
+    let cloud = PointCloud::from_depth(&seen.depth, &camera);
+    counted(&cloud, object_of, |o| shown[o as usize - 1] >= SHOWN)
+}
+
+#[test]
+#[allow(clippy::print_stdout)]
+fn things_on_made_shelves_are_found() {
+    let counts = (3000..3010).map(on_a_shelf);
+    let sum = counts.fold([0; 3], |sum, counts| [0, 1, 2].map(|k| sum[k] + counts[k]));
+    println!("{} of {} found, {} merged", sum[0], sum[2], sum[1]);
+    assert!(sum[2] > 50 && 100 * sum[0] >= 60 * sum[2], "{sum:?}");
 }
