@@ -1,5 +1,6 @@
 //! CPU time of the depth frame that the first camera of a scene sees, on one core, into new images and over the images of the
-//! frame before, and what another ray caster needs to make the same frame: `cargo run --release --example look_speed SCENE.json OUT --tolerance 1e-4`.
+//! frame before, and what another ray caster needs to make the same frame:
+//! `cargo run --release --example look_speed SCENE.json OUT --tolerance 1e-4`.
 //!
 //! OUT gets a mesh of each part in the world, `part_000.ply` and on, no farther than the tolerance (in metres) from the
 //! surface, and `depth.f32`, the depths along the optical axis by rows. `compare/look_open3d.py` reads them.

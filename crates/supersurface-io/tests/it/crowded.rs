@@ -1,4 +1,4 @@
-//! Crowded real scenes, every point labelled: how many objects are found as they are.
+//! Crowded scenes, real and made, and made shelves, every point labelled: how many objects are found as they are.
 
 use std::collections::BTreeMap;
 
@@ -128,8 +128,8 @@ fn made_crowds_are_told_apart() {
     assert!(sum[2] > 300 && 100 * sum[0] >= 90 * sum[2], "{sum:?}");
 }
 
-/// Things on the boards of a shelf as a RealSense sees them: the objects found, found in a piece that is mostly another's, and
-/// all that show enough of themselves.
+/// Things on the boards of a shelf as a RealSense sees them: the objects found, found in a piece that is mostly
+/// another's, and all that show enough of themselves.
 fn on_a_shelf(seed: u64) -> [usize; 3] {
     let things = draw(&read_things("household").unwrap(), 8, seed).unwrap();
     let scene = arrange(things, Layout::Shelf, seed).unwrap();

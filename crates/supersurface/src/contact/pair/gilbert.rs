@@ -1,4 +1,5 @@
-//! The last resort for bodies that are apart, or that few directions leave undecided: the algorithm of Gilbert, Johnson and Keerthi (1988).
+//! The last resort for bodies that are apart, or that no cell of directions shows to overlap: the algorithm of Gilbert,
+//! Johnson and Keerthi (1988).
 //!
 //! The direction of the origin from the Minkowski difference is that of its nearest point on a simplex of support
 //! points, which a new support point improves until none is nearer. It needs no derivatives, so that nothing can

@@ -19,8 +19,8 @@ const MOST: usize = 4_000;
 /// Low nodes of the grid that are followed at first.
 const FOLLOWED: usize = 8;
 
-/// The nearest slices, and bounds of the bodies' distance in their contact; where two slices are found to be nearer than `stop`,
-/// these. Bounds are `content` apart, if the pairs of slices last. Both relative to the smaller body's size.
+/// The nearest slices, and bounds of the bodies' distance in their contact; where two slices are found to be nearer than
+/// `stop`, these. Bounds are `content` apart, if the pairs of slices last. Both relative to the smaller body's size.
 pub(super) fn nearest(
     bodies: [&Sliced; 2],
     content: f64,

@@ -77,8 +77,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// No translation is shorter than this: shown over cells of directions, while shorter ones are found. More than `CONTENT` of
-    /// the best is not shown.
+    /// No translation is shorter than this: shown over cells of directions, while shorter ones are found. More than
+    /// `CONTENT` of the best is not shown.
     fn least(&mut self) -> Result<f64, InvalidShape> {
         let mut queue = Cell::all();
         let mut open: Vec<(f64, Cell)> = Vec::new();
@@ -138,7 +138,8 @@ impl Search<'_> {
         }
     }
 
-    /// Makes one that is shorter the best; if slices between those that were asked still overlap after it, then where it settles with them.
+    /// Makes one that is shorter the best. If slices between those that were asked still overlap after it, then where it
+    /// settles with them, if they are clear within a few rounds.
     fn take(&mut self, found: Parting) -> Result<(), InvalidShape> {
         let mut found = found;
         for _ in 0..CHECKED {

@@ -103,7 +103,8 @@ impl<'a> Settling<'a> {
         let Some(mut found) = self.parting(from)? else { return Ok(None) };
         // slices between the nodes, with their planes
         let mut between: Vec<([f64; 2], Plane)> = Vec::new();
-        // planes seen from where slices overlap may contradict each other; what was found lies before all that are seen from there
+        // planes seen from where slices overlap may contradict each other; what was found lies before all that are seen
+        // from there
         let mut careful = false;
         let mut last: Option<Vector> = None;
         let mut parted = 0;
