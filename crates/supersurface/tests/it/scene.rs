@@ -4,7 +4,7 @@ use supersurface::camera::Camera;
 use supersurface::cloud::PointCloud;
 use supersurface::measure::first_hit;
 use supersurface::scene::{
-    DepthNoise, Layout, Likeness, Recipe, arrange, demo, draw, look, turntable, visibility,
+    DepthNoise, Layout, Likeness, Look, Recipe, arrange, demo, draw, look, turntable, visibility,
 };
 use supersurface::shape::{Implicit, Ray};
 use supersurface::{Direction, Point};
@@ -35,6 +35,28 @@ fn the_demo_is_deterministic_and_shows_every_body() {
         }
         let read = seen.depth.depth().iter().filter(|z| z.is_finite()).count();
         assert!(read as f64 > 0.8 * 640.0 * 480.0, "seed {seed}: {read} readings");
+    }
+}
+
+#[test]
+fn a_frame_over_another_is_as_if_it_were_the_first() {
+    let bits = |l: &Look| -> Vec<u32> { l.depth.depth().iter().map(|z| z.to_bits()).collect() };
+    let [one, two] = [1, 2].map(|seed| demo(seed).unwrap());
+    let small = Camera::new([90, 70], [80.0, 80.0], [44.5, 34.5]).unwrap();
+    let noise = [DepthNoise::realsense(), DepthNoise::none()];
+    let mut seen = Look::blank(&small);
+    for (k, (d, camera)) in
+        [(&one, &small), (&two, &two.camera), (&one, &one.camera), (&two, &small)]
+            .iter()
+            .enumerate()
+    {
+        for noise in &noise {
+            let fresh = look(&d.scene, camera, &d.camera_pose, noise, k as u64);
+            seen.again(&d.scene, camera, &d.camera_pose, noise, k as u64);
+            assert_eq!(bits(&seen), bits(&fresh));
+            assert!(seen.labels == fresh.labels && seen.seen == fresh.seen);
+            assert!(seen.normals == fresh.normals);
+        }
     }
 }
 
