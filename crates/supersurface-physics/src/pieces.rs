@@ -69,7 +69,7 @@ impl Pieces {
         Some(Self {
             surface: *surface,
             compound: Compound::new(sectors),
-            hull: Some(ConvexSolid::from_sector(Sector::ring(toroid)?, mass)),
+            hull: Some(ConvexSolid::from_sector(Sector::ring(toroid), mass)),
             mass,
             finder: Some(ClosestFinder::supertoroid(toroid)),
         })
@@ -111,7 +111,7 @@ fn sectors(toroid: &Supertoroid) -> Option<Vec<Sector>> {
     let [.., most] = SECTORS;
     let mut found = None;
     for count in SECTORS {
-        let sectors = Sector::all(toroid, count)?;
+        let sectors = Sector::all(toroid, count);
         let worst = sectors.iter().map(Sector::deviation).fold(0.0, f64::max);
         if worst <= allowed || count == most {
             found = Some(sectors);

@@ -52,13 +52,14 @@ fn a_scene_is_the_same_bytes_on_any_number_of_threads() {
         let cloud = folder.join("view_000/cloud.pcd");
         let found = run(&["segment", text(&cloud), "--json"]).ended(0).json();
         let objects = found["objects"].as_array().map_or(0, Vec::len);
-        assert!((3..=4).contains(&objects), "{found}");
+        // two boxes, and a hammer that comes in its parts
+        assert!((3..=5).contains(&objects), "{found}");
         let (depth, camera) =
             (folder.join("view_000/depth.png"), folder.join("view_000/camera.json"));
         let words = ["segment", text(&depth), "--camera", text(&camera), "--json"];
         let found = run(&words).ended(0).json();
         let objects = found["objects"].as_array().map_or(0, Vec::len);
-        assert!((3..=4).contains(&objects), "{found}");
+        assert!((3..=5).contains(&objects), "{found}");
     }
 }
 

@@ -9,7 +9,8 @@
 use std::f64::consts::TAU;
 
 use supersurface::numeric::powers::{quadrant_cos_sin, signed_power};
-use supersurface::shape::{Superellipsoid, Supertoroid, SupportMap};
+use supersurface::numeric::superellipse::touched;
+use supersurface::shape::{Supertoroid, SupportMap};
 use supersurface::{Point, Vector};
 
 /// A hull in the toroid's frame.
@@ -18,10 +19,6 @@ pub(crate) struct Sector {
     toroid: Supertoroid,
     /// Where it begins and ends, counter-clockwise; `None` for the whole ring.
     ends: Option<[End; 2]>,
-    /// The section in the plane of x and z for a spoke of unit length.
-    section: Superellipsoid,
-    /// The superellipse of the spokes, as a body whose height does not matter.
-    spokes: Superellipsoid,
 }
 
 /// An end of a sector: its spoke, and the normal of the superellipse of spokes there.
@@ -33,21 +30,16 @@ struct End {
 
 impl Sector {
     /// The hull of a whole ring.
-    pub(crate) fn ring(toroid: &Supertoroid) -> Option<Self> {
-        let [a, b, c] = toroid.semi_axes();
-        let [e1, e2] = toroid.exponents();
-        let spokes = Superellipsoid::new([a, b, a.min(b)], [1.0, e2]).ok()?;
-        let section = Superellipsoid::new([1.0, 1.0, c], [e1, 1.0]).ok()?;
-        Some(Self { toroid: *toroid, ends: None, section, spokes })
+    pub(crate) const fn ring(toroid: &Supertoroid) -> Self {
+        Self { toroid: *toroid, ends: None }
     }
 
     /// All sectors of a toroid: `count` of them, a multiple of 8, so that the corners of square rings are seams. The
     /// exponents are at most 2.
-    pub(crate) fn all(toroid: &Supertoroid, count: usize) -> Option<Vec<Self>> {
-        let ring = Self::ring(toroid)?;
+    pub(crate) fn all(toroid: &Supertoroid, count: usize) -> Vec<Self> {
         let end = |k: usize| End::at(toroid, k as f64 / count as f64 * TAU);
         let ends = |k| Some([end(k), end((k + 1) % count)]);
-        Some((0..count).map(|k| Self { ends: ends(k), ..ring.clone() }).collect())
+        (0..count).map(|k| Self { toroid: *toroid, ends: ends(k) }).collect()
     }
 
     /// How far the chords of the hole's side lie inside of the hole, at most, in metres.
@@ -64,8 +56,10 @@ impl Sector {
     /// The spoke of the arc that reaches farthest along a direction.
     fn reach(&self, n: &[f64; 2]) -> [f64; 2] {
         let touched = || {
-            let p = self.spokes.support_point(&Vector::new(n[0], n[1], 0.0));
-            [p.x, p.y]
+            let [a, b, _] = self.toroid.semi_axes();
+            let [_, e2] = self.toroid.exponents();
+            let (_, [x, y]) = touched((a * n[0]).abs(), (b * n[1]).abs(), e2);
+            [(a * x).copysign(n[0]), (b * y).copysign(n[1])]
         };
         let Some([from, to]) = &self.ends else { return touched() };
         // of most directions no power needs to be known
@@ -82,11 +76,14 @@ impl Sector {
 
 impl SupportMap for Sector {
     fn support_point(&self, n: &Vector) -> Point {
+        let [_, _, c] = self.toroid.semi_axes();
+        let [e1, _] = self.toroid.exponents();
         let p = self.reach(&super::planar(n));
+        // the section for a spoke of unit length
         let along = p[0] * n.x + p[1] * n.y;
-        let tube = self.section.support_point(&Vector::new(along, 0.0, n.z));
-        let share = self.toroid.ring_ratio() + tube.x;
-        Point::new(p[0] * share, p[1] * share, tube.z)
+        let (_, [x, z]) = touched(along.abs(), (c * n.z).abs(), e1);
+        let share = self.toroid.ring_ratio() + x.copysign(along);
+        Point::new(p[0] * share, p[1] * share, (c * z).copysign(n.z))
     }
 }
 

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use supersurface::deform::{Deformed, Taper};
 use supersurface::numeric::powers::{quadrant_cos_sin, quick_power, signed_power};
-use supersurface::numeric::superellipse::{dual_exponent, weighted};
+use supersurface::numeric::superellipse::{dual_exponent, touched, weighted};
 use supersurface::shape::{Superellipsoid, SupportMap};
 use supersurface::{Point, Vector};
 
@@ -140,11 +140,9 @@ impl SupportMap for Tapered {
         let [a, b, a3] = self.solid.shape().semi_axes();
         let [kx, ky] = self.solid.deformation().slopes();
         let [t, r] = self.touched(n);
-        let e2 = self.solid.shape().exponents()[1];
-        // the section as a flat superellipsoid
-        let section =
-            Superellipsoid::new([a * (1.0 + kx * t) * r, b * (1.0 + ky * t) * r, a3], [1.0, e2]);
-        let p = section.map_or(Point::origin(), |s| s.support_point(&Vector::new(n.x, n.y, 0.0)));
-        Point::new(p.x, p.y, a3 * t)
+        let [_, e2] = self.solid.shape().exponents();
+        let [a, b] = [a * (1.0 + kx * t) * r, b * (1.0 + ky * t) * r];
+        let (_, [x, y]) = touched((a * n.x).abs(), (b * n.y).abs(), e2);
+        Point::new((a * x).copysign(n.x), (b * y).copysign(n.y), a3 * t)
     }
 }

@@ -34,7 +34,17 @@ pub(super) fn touch_by_search<M, C>(
     let between = || pos12 * middle(g2) - middle(g1);
     let before = manifold.local_n1.try_normalize().or_else(|| between().try_normalize());
     let (before, touched) = (before.unwrap_or(ParryVector::X), !manifold.points.is_empty());
-    Ok(match search(pos12, map1, map2, prediction + border1 + border2, before, touched) {
+    let reach = prediction + border1 + border2;
+    // most pieces of two bodies are parted by their boxes already
+    let far = |g: &dyn Shape, way: ParryVector| {
+        let bounds = g.compute_local_aabb();
+        bounds.center().dot(way) + bounds.half_extents().dot(way.abs())
+    };
+    let [n1, n2] = facing(before);
+    if pos12.translation.dot(before) - far(g1, n1) - far(g2, n2) > reach {
+        return Ok(Touch { distance: f64::INFINITY, normals: [n1, n2], points: None });
+    }
+    Ok(match search(pos12, map1, map2, reach, before, touched) {
         Found::Touching([p1, p2], n) => {
             let points = Some([p1, pos12.inverse_transform_point(p2)]);
             Touch { distance: (p2 - p1).dot(n), normals: facing(n), points }

@@ -1,7 +1,7 @@
 //! The nearest or deepest points of two convex shapes that only have support points, step by step.
 //!
 //! GJK's iterations with two changes for pairs that stay together. What parted them in the step before is tried first, and
-//! mostly still does. And shapes that touched are looked at a little apart, shifted along their last normal: GJK needs no
+//! mostly still does. And shapes that touched are looked at apart, shifted by the reach along their last normal: GJK needs no
 //! second algorithm (EPA) then where they overlap, and many fewer iterations where they only just touch. The normal that
 //! is found belongs to the shifted pair; as it is the next step's shift, it is the true one once the pair is at rest.
 
@@ -13,9 +13,7 @@ use parry3d_f64::shape::SupportMap;
 /// Iterations, after which parry's own are asked.
 const STEPS: usize = 50;
 /// The distance is found to within this share.
-const TOLERANCE: f64 = 1e-5;
-/// What is added to the distance of shapes that touched, as a share of the reach.
-const SHIFT: f64 = 0.25;
+const TOLERANCE: f64 = 1e-4;
 
 /// How two shapes lie, all in the first one's frame.
 pub(super) enum Found {
@@ -35,7 +33,7 @@ pub(super) fn search(
     before: ParryVector,
     touched: bool,
 ) -> Found {
-    let shift = before * if touched { SHIFT * reach } else { 0.0 };
+    let shift = before * if touched { reach } else { 0.0 };
     let mut shifted = *pos12;
     shifted.translation += shift;
     let far = reach + shift.dot(before);

@@ -90,7 +90,7 @@ impl Default for SettleOptions {
     fn default() -> Self {
         Self {
             gravity: Vector::new(0.0, 0.0, -9.81),
-            rate: 240.0,
+            rate: 200.0,
             time_limit: 8.0,
             still: 0.004,
             rocking: 1.0,

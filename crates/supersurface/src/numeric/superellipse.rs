@@ -5,6 +5,7 @@
 //! arguments it neither overflows nor underflows for any exponent in (0, 2.5].
 
 use super::lanes::Lane;
+use super::powers::quick_power;
 
 /// The norm of a pair together with the share that each argument has in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,6 +98,37 @@ pub fn dual_exponent(epsilon: f64) -> f64 {
 pub fn dual_norm(u: f64, v: f64, epsilon: f64) -> f64 {
     let q = dual_exponent(epsilon);
     if q.is_infinite() { u.max(v) } else { norm(u, v, q) }
+}
+
+/// The dual norm of a non-negative pair, and the point of the unit curve `x^(2/ε) + y^(2/ε) = 1` that is touched by the
+/// line with this pair as its normal: `(part/norm)^(q-1)` of both parts.
+///
+/// With `r = small/large` and `q = 2/(2-ε)` the larger part has `(1 + r^q)^(-ε/2)`, which times `1 + r^q` is the norm, too.
+/// For ε >= 2 the larger takes all, of equal ones the first.
+///
+/// ```
+/// use supersurface::numeric::superellipse::touched;
+/// assert_eq!(touched(3.0, 4.0, 1.0), (5.0, [0.6, 0.8]));
+/// ```
+pub fn touched(first: f64, second: f64, epsilon: f64) -> (f64, [f64; 2]) {
+    let in_order = |large: f64, small: f64| match first >= second {
+        true => [large, small],
+        false => [small, large],
+    };
+    let [large, small] = in_order(first, second);
+    let ratio = small / large;
+    if epsilon >= 2.0 || small == 0.0 || ratio == 0.0 || large == f64::INFINITY {
+        return (large, in_order(1.0, 0.0));
+    }
+    if epsilon == 1.0 {
+        let m = (1.0 + ratio * ratio).sqrt();
+        return (large * m, in_order(1.0 / m, ratio / m));
+    }
+    let q = dual_exponent(epsilon);
+    let other = quick_power(ratio, q - 1.0);
+    let t = ratio * other;
+    let share = quick_power(1.0 + t, -0.5 * epsilon);
+    (large * (1.0 + t) * share, in_order(share, other * share))
 }
 
 /// One layer of a gauge in logarithms, as the fitting kernels use it.

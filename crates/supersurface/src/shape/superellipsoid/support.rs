@@ -1,8 +1,7 @@
 //! Support point in closed form (FORMULAS §9).
 
 use super::Superellipsoid;
-use crate::numeric::powers::quick_power;
-use crate::numeric::superellipse::dual_exponent;
+use crate::numeric::superellipse::touched;
 use crate::shape::SupportMap;
 use crate::{Point, Vector};
 
@@ -29,28 +28,4 @@ impl SupportMap for Superellipsoid {
             (a3 * z).copysign(n.z),
         )
     }
-}
-
-/// The dual norm of a non-negative pair, and `(part/norm)^(q-1)` of both parts: where the unit curve of the exponent is
-/// touched. With `r = small/large` and `q = 2/(2-ε)` the larger part has `(1 + r^q)^(-ε/2)`, which times `1 + r^q` is the
-/// norm, too. For ε >= 2 the larger takes all, of equal ones the first.
-fn touched(first: f64, second: f64, epsilon: f64) -> (f64, [f64; 2]) {
-    let in_order = |large: f64, small: f64| match first >= second {
-        true => [large, small],
-        false => [small, large],
-    };
-    let [large, small] = in_order(first, second);
-    let ratio = small / large;
-    if epsilon >= 2.0 || small == 0.0 || ratio == 0.0 || large == f64::INFINITY {
-        return (large, in_order(1.0, 0.0));
-    }
-    if epsilon == 1.0 {
-        let m = (1.0 + ratio * ratio).sqrt();
-        return (large * m, in_order(1.0 / m, ratio / m));
-    }
-    let q = dual_exponent(epsilon);
-    let other = quick_power(ratio, q - 1.0);
-    let t = ratio * other;
-    let share = quick_power(1.0 + t, -0.5 * epsilon);
-    (large * (1.0 + t) * share, in_order(share, other * share))
 }
