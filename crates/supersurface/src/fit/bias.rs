@@ -19,10 +19,12 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{DMatrix, DVector, Rotation3};
 
 use super::columns::{Evaluation, Sample};
+use super::normal::Normal;
 use super::parameters::{BEND, COUNT, EXPONENT, POSITION, Parameters, RING, Row, TAPER, TWIST};
 use super::samples::{cells, columns};
-use super::solver::{Hypothesis, normal_equations};
+use super::solver::Hypothesis;
 use crate::Vector;
+use crate::numeric::column::Column;
 use crate::numeric::lanes::{Job, dispatch, dot};
 use crate::numeric::random::Stream;
 
@@ -99,7 +101,7 @@ struct Room {
 struct Sums {
     at: Evaluation,
     /// Equivalent least squares' weights times the shares, and these times the distances.
-    weights: Vec<f64>,
+    weights: Column<f64>,
     pulls: Vec<f64>,
     belonging: f64,
 }
@@ -127,7 +129,7 @@ impl Sums {
     /// The information a point has of some parameters, by the first derivatives alone.
     fn information(&self, h: &Hypothesis, index: &[usize]) -> DMatrix<f64> {
         let family = h.parameters.family;
-        let sums = normal_equations(family, &self.at, &self.weights, &mut Vec::new()).matrix;
+        let sums = Normal::of_points(family, &self.at, &self.weights, &mut Vec::new()).matrix;
         DMatrix::from_fn(index.len(), index.len(), |j, k| {
             sums[index[j.max(k)]][index[j.min(k)]] / self.belonging
         })

@@ -46,7 +46,16 @@ impl Placement {
     }
 }
 
-/// A cloud with zero mean and unit root mean square, along its principal axes.
+/// Cells of the grid on which normalised coordinates lie, in a unit of length: no more than single precision tells apart.
+const GRID: f64 = (1u32 << 24) as f64;
+
+/// A coordinate on the grid. What a move, a turn or a change of units leaves in the last digits is gone there, so that a
+/// search takes the same way.
+pub(super) fn on_grid(x: f64) -> f64 {
+    (x * GRID).round() / GRID
+}
+
+/// A cloud with zero mean and unit root mean square, along its principal axes, on a grid.
 #[derive(Clone, Debug)]
 pub(super) struct Centred {
     pub(super) points: Vec<Vector>,
@@ -79,7 +88,7 @@ impl Centred {
         if values[1] < 1e-10 * values[2] {
             return Err(FitError::Line { points: found });
         }
-        points.iter_mut().for_each(|p| *p = axes.inverse_transform_vector(p));
+        points.iter_mut().for_each(|p| *p = axes.inverse_transform_vector(p).map(on_grid));
         Ok(Self { points, placement: Placement { centre, axes, scale } })
     }
 }

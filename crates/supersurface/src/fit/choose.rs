@@ -278,7 +278,7 @@ fn may_be_hollow(cloud: &Normalised, h: &Hypothesis) -> bool {
         distances.into_iter().filter(|d| *d < -depth).count() as f64
     };
     let mut intrusions = Vec::new();
-    let mut rays = Rays::default();
+    let mut rays = Rays::<f64>::default();
     cloud.terms.intrusions(&h.parameters, RAYS, true, &mut rays, &mut intrusions);
     let looked = cloud.terms.lines_of_sight(RAYS, true) as f64;
     deeper_than(deep, &cloud.points) > HOLLOW * cloud.points.len() as f64
@@ -303,7 +303,7 @@ fn shows_hole(toroid: &Hypothesis, points: &[Vector], eye: Option<Vector>, plain
     // the side of the mid-plane on which the sensor stands; without one, or with several, both count
     let mouth = eye.map(|v| s.rotation.inverse_transform_vector(&(v - s.position)).z.signum());
     let (mut inner, mut blocked, mut inliers) = (0usize, 0usize, 0usize);
-    let mut all = Evaluation::default();
+    let mut all = Evaluation::<f64>::default();
     all.fill_distances(s, &Sample::new(points.iter().copied()));
     for (p, d) in points.iter().zip(&all.distances) {
         let q = s.rotation.inverse_transform_vector(&(p - s.position));

@@ -15,11 +15,13 @@ use nalgebra::{DMatrix, DVector};
 use super::Effort;
 use super::bias;
 use super::columns::Evaluation;
+use super::normal::Normal;
 use super::parameters::{COUNT, EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
 use super::sights::Sights;
-use super::solver::{Hypothesis, normal_equations};
-use super::terms::{Normal, Sight};
+use super::solver::Hypothesis;
+use super::terms::Sight;
+use crate::numeric::column::Column;
 
 /// Precision of the prior of every parameter in normalised units: a deviation of 1.
 const PRIOR: f64 = 1.0;
@@ -79,14 +81,15 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let index: Vec<usize> = (0..NAMES.len()).filter(|k| s.family.has(*k)).collect();
     let n = index.len();
     let counted = cloud.fine.len();
-    let (mut weights, mut curvatures, mut squares, mut buffer) = (vec![], vec![], vec![], vec![]);
+    let (mut curvatures, mut squares, mut buffer) = (vec![], vec![], vec![]);
+    let mut weights = Column::default();
     h.mixture.weigh(&at.distances, counted, &mut weights);
     let distances = &at.distances[..counted];
     curvatures.extend(distances.iter().map(|d| h.mixture.curvature(*d)));
     squares.extend(distances.iter().zip(&weights).map(|(d, w)| (w * d) * (w * d)));
     curvatures.resize(weights.len(), 0.0);
     squares.resize(weights.len(), 0.0);
-    let mut sums = |weights: &[f64]| normal_equations(s.family, &at, weights, &mut buffer);
+    let mut sums = |weights: &[f64]| Normal::of_points(s.family, &at, weights, &mut buffer);
     let symmetric = |sums: &Normal| {
         DMatrix::from_fn(n, n, |j, k| sums.matrix[index[j.max(k)]][index[j.min(k)]])
     };

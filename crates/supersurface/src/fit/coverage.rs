@@ -9,7 +9,7 @@
 
 use std::f64::consts::PI;
 
-use super::columns::{Sample, distances};
+use super::columns::{Evaluation, Sample, distances};
 use super::neighbours::Neighbours;
 use super::noise::Mixture;
 use super::parameters::Parameters;
@@ -32,17 +32,18 @@ pub(super) fn shows_a_part(cloud: &Normalised, h: &Hypothesis) -> bool {
 
 /// Negative log-likelihood of points as a density on that part of a body which they cover, beside outliers in a box of some
 /// volume: a body that is cut where the points end has no advantage over one that goes on unseen.
-pub(super) fn covering_cost(h: &Hypothesis, points: &Sample, volume: f64) -> f64 {
+pub(super) fn covering_cost(h: &Hypothesis, points: &Sample<f32>, volume: f64) -> f64 {
     let area = h.parameters.area() * (coverage(h, points) / BY_CHANCE).min(1.0);
-    let distances = distances(&h.parameters, points.points());
+    let mut at = Evaluation::default();
+    at.fill_distances(&h.parameters, points);
     let mut mixture = Mixture { density: area / volume, ..h.mixture };
-    mixture.update(&distances, points.len(), [NOISE_FLOOR, f64::INFINITY], 4);
-    mixture.cost(&distances, points.len()) + points.len() as f64 * area.ln()
+    mixture.update(&at.distances, points.len(), [NOISE_FLOOR, f64::INFINITY], 4);
+    mixture.cost(&at.distances, points.len()) + points.len() as f64 * area.ln()
 }
 
 /// Share of the points that an evenly seen surface would have and this one has, in [0, 1]: of the points within some radius
 /// of a place on it, those that are missing are counted, those too many are not.
-fn coverage(h: &Hypothesis, points: &Sample) -> f64 {
+fn coverage(h: &Hypothesis, points: &Sample<f32>) -> f64 {
     const PROBES: usize = 160;
     /// Points due within the radius.
     const DUE: f64 = 20.0;

@@ -10,6 +10,7 @@ use super::smeared::smeared_cost;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::terms::{Sight, Terms};
 use crate::Vector;
+use crate::numeric::lanes::Lane;
 
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
@@ -32,12 +33,8 @@ const SIGHTED: usize = 2;
 pub(super) const COMPARING: usize = 400;
 
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
-pub(super) fn finish(
-    cloud: &Normalised,
-    terms: &Terms,
-    pool: &[Hypothesis],
-    work: &mut Workspace,
-) -> Hypothesis {
+pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> Hypothesis {
+    let work = &mut Workspace::default();
     let to_the_end = |h: &Hypothesis, work: &mut Workspace| {
         refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
@@ -56,14 +53,11 @@ pub(super) fn finish(
         }
         Sight::OneSide if cloud.effort == Effort::Quick => return best,
         Sight::OneSide => {
-            let mut along = |h: &Hypothesis, points: &Sample| {
-                let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
-                refine(h, points, terms, &last, work)
-            };
             let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));
-            let rivals = rivals.map(|h| along(h, &cloud.middle)).collect();
+            let mut rough = Workspace::default();
+            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, &mut rough)).collect();
             let best = cheapest(rivals).unwrap_or(pool[0]);
-            return along(&best, &cloud.fine);
+            return along_rays(&best, &cloud.fine, terms, work);
         }
     };
     let exactly = |h: &Hypothesis, work: &mut Workspace| {
@@ -91,6 +85,17 @@ pub(super) fn finish(
         Some((fitted, cost)) if cost < unbiased.cost => corrected(&exactly(&fitted, work)),
         _ => unbiased,
     }
+}
+
+/// A hypothesis refined by residuals along the rays in which some points were seen.
+fn along_rays<L: Lane>(
+    h: &Hypothesis,
+    points: &Sample<L>,
+    terms: &Terms,
+    work: &mut Workspace<L>,
+) -> Hypothesis {
+    let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
+    refine(h, points, terms, &last, work)
 }
 
 fn cheapest(rivals: Vec<Hypothesis>) -> Option<Hypothesis> {

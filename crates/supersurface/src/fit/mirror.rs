@@ -11,7 +11,7 @@
 //! planes that are none of its own. So a fit only begins from it.
 
 use super::View;
-use super::centred::{Centred, spread};
+use super::centred::{Centred, on_grid, spread};
 use super::free_space::Picture;
 use super::prepare::Normalised;
 use super::start::{Frame, quantile, whole_frames};
@@ -111,7 +111,7 @@ pub fn mirrored(view: &View<'_>) -> Option<Mirror> {
 /// The frames of the seen points with their mirror image, in the units of a view made ready.
 pub(super) fn completed_frames(view: &View<'_>, cloud: &Normalised) -> Vec<Frame> {
     let Some(mirror) = mirrored(view).filter(|m| !m.points.is_empty()) else { return Vec::new() };
-    let guessed = mirror.points.iter().map(|p| cloud.placement.inward(p));
+    let guessed = mirror.points.iter().map(|p| cloud.placement.inward(p).map(on_grid));
     let points: Vec<Vector> = cloud.points.iter().copied().chain(guessed).collect();
     whole_frames(&spread(&points, FRAMED))
 }

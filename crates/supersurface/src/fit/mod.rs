@@ -40,6 +40,7 @@ mod mirror;
 mod misfit;
 mod neighbours;
 mod noise;
+mod normal;
 mod parameters;
 mod patches;
 mod pieces;

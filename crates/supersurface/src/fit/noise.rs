@@ -5,7 +5,9 @@
 //! should explain. On single views, whose noise acts along the rays and grows at edges, it is a Student-t
 //! with 3 degrees of freedom.
 
-use crate::numeric::lanes::{Job, WIDTH, dispatch, exp, ln};
+use super::kernel::WIDEST;
+use crate::numeric::column::Column;
+use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// The law of the inliers' distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,36 +47,62 @@ const GAUSS: f64 = 0.398_942_280_401_432_7;
 
 /// The mixture at one distance: probability of belonging, equivalent weight of `d²/scale²`, density.
 #[derive(Clone, Copy)]
-struct Share {
-    belongs: f64,
-    weight: f64,
-    density: f64,
+struct Share<L> {
+    belongs: L,
+    weight: L,
+    density: L,
 }
 
 impl Mixture {
     #[inline(always)]
-    fn share<const FUSED: bool>(&self, d: f64) -> Share {
-        let t = d * d / (self.scale * self.scale);
-        let q = 1.0 / (1.0 + t / 3.0);
+    fn share<const FUSED: bool, L: Lane>(&self, d: L) -> Share<L> {
+        let one = L::of(1.0);
+        let t = d * d * L::of(1.0 / (self.scale * self.scale));
         let (law, weight) = match self.law {
-            Law::Gaussian => (GAUSS / self.scale * exp::<FUSED>(-0.5 * t), 1.0),
-            Law::StudentT => (T3 / self.scale * q * q, 4.0 / 3.0 * q),
+            Law::Gaussian => ((L::of(-0.5) * t).exp::<FUSED>(), one),
+            Law::StudentT => {
+                let q = one / t.times_plus::<FUSED>(L::of(1.0 / 3.0), one);
+                (q * q, L::of(4.0 / 3.0) * q)
+            }
         };
-        let inlier = (1.0 - self.outliers) * law;
-        let density = inlier + self.outliers * self.density;
-        Share { belongs: inlier / density, weight, density }
+        let constant = match self.law {
+            Law::Gaussian => GAUSS,
+            Law::StudentT => T3,
+        };
+        let inlier = L::of((1.0 - self.outliers) * constant / self.scale) * law;
+        let density = inlier + L::of(self.outliers * self.density);
+        let belongs = inlier / density;
+        // less is nothing, and products with it would be too small for fast units
+        let belongs = if belongs > L::of(LEAST_SHARE) { belongs } else { L::of(0.0) };
+        Share { belongs, weight, density }
+    }
+
+    /// What up to [`TOGETHER`] distances say.
+    #[inline(always)]
+    fn shares<const FUSED: bool, L: Lane>(&self, distances: &[L], each: &mut Each<L>) {
+        let precision = L::of(1.0 / (self.scale * self.scale));
+        let n = distances.len();
+        let (belonging, spread) = (&mut each.belonging[..n], &mut each.spread[..n]);
+        let (density, weight) = (&mut each.density[..n], &mut each.weight[..n]);
+        for i in 0..n {
+            let d = distances[i];
+            let share = self.share::<FUSED, L>(d);
+            let own = share.belongs * share.weight;
+            (belonging[i], spread[i]) = (share.belongs, own * d * d);
+            (density[i], weight[i]) = (share.density, own * precision);
+        }
     }
 
     /// Weight of one squared distance in the equivalent least squares problem, in 1/length².
     pub(super) fn weight(&self, d: f64) -> f64 {
-        let share = self.share::<false>(d);
+        let share = self.share::<false, f64>(d);
         share.belongs * share.weight / (self.scale * self.scale)
     }
 
     /// Second derivative of the negative log-likelihood of one distance, in 1/length²: below the weight where the law is
     /// wider than a Gaussian, negative for outliers.
     pub(super) fn curvature(&self, d: f64) -> f64 {
-        let Share { belongs, weight, .. } = self.share::<false>(d);
+        let Share { belongs, weight, .. } = self.share::<false, f64>(d);
         let precision = 1.0 / (self.scale * self.scale);
         let slope = weight * d * precision;
         let within = match self.law {
@@ -87,38 +115,45 @@ impl Mixture {
     /// Probability that a point at distance `d` belongs to the surface.
     #[inline]
     pub(super) fn belongs(&self, d: f64) -> f64 {
-        self.share::<false>(d).belongs
+        self.share::<false, f64>(d).belongs
     }
 
     /// By how much the cost rises when a point at distance `d` is an outlier after all.
     pub(super) fn price_of_leaving(&self, d: f64) -> f64 {
-        (self.share::<false>(d).density / (self.outliers * self.density)).ln()
+        (self.share::<false, f64>(d).density / (self.outliers * self.density)).ln()
     }
 
     /// Weights of squared distances in the equivalent least squares problem, in 1/length², and the negative
-    /// log-likelihood of the first `count` distances; the others weigh nothing.
-    pub(super) fn weigh(&self, distances: &[f64], count: usize, weights: &mut Vec<f64>) -> f64 {
-        weights.resize(distances.len(), 0.0);
-        self.sums::<true>(distances, count, weights).cost
+    /// log-likelihood of the first `count` distances, which are padded to a multiple of [`Lane::WIDTH`]; padding weighs
+    /// nothing.
+    pub(super) fn weigh<L: Lane>(
+        &self,
+        distances: &[L],
+        count: usize,
+        weights: &mut Column<L>,
+    ) -> f64 {
+        weights.resize(distances.len(), L::of(0.0));
+        self.sums::<true, true, L>(distances, count, weights).cost
     }
 
-    /// Negative log-likelihood of the first `count` distances.
-    pub(super) fn cost(&self, distances: &[f64], count: usize) -> f64 {
-        self.sums::<true>(distances, count, &mut []).cost
+    /// Negative log-likelihood of the first `count` distances, padded as for [`Self::weigh`].
+    pub(super) fn cost<L: Lane>(&self, distances: &[L], count: usize) -> f64 {
+        self.sums::<true, false, L>(distances, count, &mut []).cost
     }
 
     /// `rounds` of expectation maximisation of scale (within limits) and outlier share by the first `count`
-    /// distances.
-    pub(super) fn update(
+    /// distances, padded as for [`Self::weigh`].
+    pub(super) fn update<L: Lane>(
         &mut self,
-        distances: &[f64],
+        distances: &[L],
         count: usize,
         [low, high]: [f64; 2],
         rounds: usize,
     ) {
         let n = count as f64;
         for _ in 0..rounds {
-            let Sums { belonging, spread, .. } = self.sums::<false>(distances, count, &mut []);
+            let Sums { belonging, spread, .. } =
+                self.sums::<false, false, L>(distances, count, &mut []);
             let belonging = belonging + 1e-9;
             let most = high.min(self.law.largest_scale());
             self.scale = (spread / belonging).sqrt().min(most).max(low);
@@ -126,9 +161,15 @@ impl Mixture {
         }
     }
 
-    fn sums<const COST: bool>(&self, distances: &[f64], count: usize, weights: &mut [f64]) -> Sums {
+    fn sums<const COST: bool, const WEIGHTS: bool, L: Lane>(
+        &self,
+        distances: &[L],
+        count: usize,
+        weights: &mut [L],
+    ) -> Sums {
         let mut sums = Sums::default();
-        dispatch(Weigh::<COST> { mixture: self, distances, count, weights, sums: &mut sums });
+        let out = &mut sums;
+        dispatch(Weigh::<COST, WEIGHTS, L> { mixture: self, distances, count, weights, out });
         sums
     }
 }
@@ -144,52 +185,65 @@ struct Sums {
     cost: f64,
 }
 
-/// One pass over distances, of which only the first count; the weights are kept where there is room for them.
-struct Weigh<'a, const COST: bool> {
+/// One pass over distances, of which only the first count, for the likelihood and the weights where these are asked for.
+struct Weigh<'a, const COST: bool, const WEIGHTS: bool, L> {
     mixture: &'a Mixture,
-    distances: &'a [f64],
+    distances: &'a [L],
     count: usize,
-    weights: &'a mut [f64],
-    sums: &'a mut Sums,
+    weights: &'a mut [L],
+    out: &'a mut Sums,
 }
 
-/// Blocks whose densities are multiplied before a logarithm is taken: within 1e±160, as each is within 1e±20.
-const MULTIPLIED: usize = 8;
+/// Least probability of belonging to the surface that is not none.
+const LEAST_SHARE: f64 = 1e-15;
 
-impl<const COST: bool> Job for Weigh<'_, COST> {
+/// Distances that are looked at together.
+const TOGETHER: usize = 64;
+
+/// What distances that are looked at together add to the sums.
+struct Each<L> {
+    belonging: [L; TOGETHER],
+    spread: [L; TOGETHER],
+    density: [L; TOGETHER],
+    weight: [L; TOGETHER],
+}
+
+impl<const COST: bool, const WEIGHTS: bool, L: Lane> Job for Weigh<'_, COST, WEIGHTS, L> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let precision = 1.0 / (self.mixture.scale * self.mixture.scale);
-        let mut lanes = [[0.0; WIDTH]; 3];
-        for (g, group) in self.distances.chunks(MULTIPLIED * WIDTH).enumerate() {
-            let mut product = [1.0; WIDTH];
-            for (b, block) in group.chunks(WIDTH).enumerate() {
-                let first = (g * MULTIPLIED + b) * WIDTH;
-                let (mut d, mut weights) = ([0.0; WIDTH], [0.0; WIDTH]);
-                d[..block.len()].copy_from_slice(block);
-                for i in 0..WIDTH {
-                    // padding has no say
-                    let counts = first + i < self.count;
-                    let here = if counts { 1.0 } else { 0.0 };
-                    let share = self.mixture.share::<FUSED>(d[i]);
-                    let weight = here * share.belongs * share.weight;
-                    weights[i] = weight * precision;
-                    lanes[0][i] += here * share.belongs;
-                    lanes[1][i] += weight * d[i] * d[i];
-                    product[i] *= if counts { share.density } else { 1.0 };
-                }
-                if let Some(out) = self.weights.get_mut(first..first + block.len()) {
-                    out.copy_from_slice(&weights[..block.len()]);
+        let (zero, one) = (L::of(0.0), L::of(1.0));
+        let none = [zero; TOGETHER];
+        let mut each = Each { belonging: none, spread: none, density: none, weight: none };
+        let mut lanes = [[zero; WIDEST]; 3];
+        for (g, group) in self.distances.chunks(TOGETHER).enumerate() {
+            let n = group.len();
+            self.mixture.shares::<FUSED, L>(group, &mut each);
+            // padding has no say
+            for i in self.count.saturating_sub(g * TOGETHER)..n {
+                (each.belonging[i], each.spread[i]) = (zero, zero);
+                (each.density[i], each.weight[i]) = (one, zero);
+            }
+            // one logarithm of up to eight densities, or four in single precision, which are within 1e±9
+            let mut product = [one; WIDEST];
+            for b in 0..n / L::WIDTH {
+                for i in 0..L::WIDTH {
+                    lanes[0][i] += each.belonging[b * L::WIDTH + i];
+                    lanes[1][i] += each.spread[b * L::WIDTH + i];
+                    product[i] = product[i] * each.density[b * L::WIDTH + i];
                 }
             }
             if COST {
-                for i in 0..WIDTH {
-                    lanes[2][i] -= ln::<FUSED>(product[i]);
+                for i in 0..L::WIDTH {
+                    lanes[2][i] = lanes[2][i] - product[i].ln::<FUSED>();
                 }
             }
+            if WEIGHTS {
+                let from = g * TOGETHER;
+                self.weights[from..from + n].copy_from_slice(&each.weight[..n]);
+            }
         }
-        let [belonging, spread, cost] = lanes.map(|l| l.iter().sum());
-        *self.sums = Sums { belonging, spread, cost };
+        let [belonging, spread, cost] = lanes.map(|l| l.iter().map(|x| x.wide()).sum());
+        *self.out = Sums { belonging, spread, cost };
     }
 }
 
@@ -202,10 +256,10 @@ mod tests {
         for law in [Law::Gaussian, Law::StudentT] {
             let mixture = Mixture { law, scale: 0.1, outliers: 0.2, density: 0.5 };
             let d: Vec<f64> = (0..16).map(|i| 0.03 * i as f64 - 0.1).collect();
-            let mut weights = Vec::new();
+            let mut weights = Column::default();
             let cost = mixture.weigh(&d, 13, &mut weights);
             let expected: f64 =
-                d[..13].iter().map(|d| -mixture.share::<false>(*d).density.ln()).sum();
+                d[..13].iter().map(|d| -mixture.share::<false, f64>(*d).density.ln()).sum();
             assert!((cost - expected).abs() < 1e-12 && weights[13..] == [0.0; 3]);
             // the weight is the slope of the cost by half the squared distance
             for (d, w) in d[..13].iter().zip(&weights).filter(|(d, _)| d.abs() > 0.01) {

@@ -170,6 +170,13 @@ impl Parameters {
         [a * outer, b * outer, c]
     }
 
+    /// Their logarithms.
+    pub(super) fn log_half_extents(&self) -> [f64; 3] {
+        let outer = if self.family.is_ring() { (1.0 + self.ring).ln() } else { 0.0 };
+        let [a, b, c] = self.log_axes;
+        [a + outer, b + outer, c]
+    }
+
     /// Where the deformations take a point of the undeformed body, in the body's frame.
     pub(super) fn deformed(&self, p: &Vector) -> Vector {
         let mut q = *p;

@@ -14,12 +14,13 @@ use nalgebra::{DMatrix, DVector, Isometry3, Rotation3, Translation3, UnitQuatern
 use super::View;
 use super::columns::{Evaluation, Sample};
 use super::noise::{Law, Mixture};
+use super::normal::Normal;
 use super::parameters::{COUNT, POSITION, Parameters};
 use super::prepare::Normalised;
 use super::search::best;
 use super::sights::Sights;
 use super::solver::{DECAY, Hypothesis, NOISE_FLOOR};
-use super::terms::{Beside, Normal, Sight, Terms};
+use super::terms::{Beside, Sight, Terms};
 use crate::shape::InvalidShape;
 use crate::{Point, Vector};
 
@@ -116,8 +117,12 @@ impl<'a> Settling<'a> {
     fn beside(&self) -> Normal {
         let mut normal = Normal::zero();
         let points = self.views.sample.len();
-        let beside =
-            Beside { points, scale: self.mixture.scale, rays: 0, intrusions: &Sample::default() };
+        let beside = Beside {
+            points,
+            scale: self.mixture.scale,
+            rays: 0,
+            intrusions: &Sample::<f64>::default(),
+        };
         self.views.terms.add(&self.body, &beside, &mut Evaluation::default(), &mut normal);
         normal
     }

@@ -1,12 +1,13 @@
 //! A view made ready: centred, thinned, with all that is known beside the points and frames to begin in.
 
-use super::centred::{Centred, Placement, axes_of, scatter, spread_over};
+use super::centred::{Centred, Placement, axes_of, on_grid, scatter, spread_over};
 use super::columns::Sample;
 use super::free_space::outline;
 use super::pieces::pieces;
 use super::start::{Frame, NEIGHBOURHOODS, frames, quantile};
 use super::terms::{Eye, Sight, Support, Terms};
 use super::{Effort, FitError, View};
+use crate::numeric::lanes::Lane;
 use crate::{Point, Vector};
 
 /// Fewer points than this determine no surface.
@@ -31,9 +32,10 @@ const SUPPORT_TOLERANCE: f64 = 0.01;
 /// What was seen, with zero mean and unit root mean square, along its principal axes.
 pub(super) struct Normalised {
     pub(super) placement: Placement,
-    pub(super) sketch: Sample,
-    pub(super) coarse: Sample,
-    pub(super) middle: Sample,
+    /// What is searched is told apart in single precision: twice as many numbers fill a register.
+    pub(super) sketch: Sample<f32>,
+    pub(super) coarse: Sample<f32>,
+    pub(super) middle: Sample<f32>,
     pub(super) fine: Sample,
     pub(super) points: Vec<Vector>,
     /// Which view has seen each of the points.
@@ -54,7 +56,7 @@ impl Normalised {
         }
         let cloud = Centred::new(&points, LEAST_POINTS)?;
         let (placement, total) = (cloud.placement, points.len());
-        let inward = |p: &Point| placement.inward(p);
+        let inward = |p: &Point| placement.inward(p).map(on_grid);
         let all = Seen { points: &cloud.points, by: &seen_by };
         let (points, seen_by) = all.chosen(spread_over(total, FINE[effort as usize]));
         let fine = Seen { points: &points, by: &seen_by };
@@ -66,8 +68,9 @@ impl Normalised {
             views.iter().map(place).collect::<Option<_>>().unwrap_or_default();
         let support =
             views.iter().find_map(|view| Some((view, view.support?))).map(|(view, plane)| {
-                let normal = placement.turned_inward(&plane.normal());
+                let normal = placement.turned_inward(&plane.normal()).map(on_grid).normalize();
                 let offset = plane.height(&Point::from(placement.centre)) / placement.scale;
+                let offset = on_grid(offset);
                 let mut heights: Vec<f64> = points.iter().map(|p| normal.dot(p) + offset).collect();
                 // a piece that hovers higher than it is large is not the top of something that stands there
                 let standing =
@@ -135,7 +138,7 @@ impl Seen<'_> {
     }
 
     /// About `count` of the points, seen from the given places of the sensors where these are known.
-    fn sample(&self, sensors: &[Vector], count: usize) -> Sample {
+    fn sample<L: Lane>(&self, sensors: &[Vector], count: usize) -> Sample<L> {
         let (points, by) = self.chosen(spread_over(self.points.len(), count));
         let away = |(p, k): (&Vector, &usize)| Some((p - sensors.get(*k)?).normalize());
         let rays = points.iter().zip(&by).filter_map(away);

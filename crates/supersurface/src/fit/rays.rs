@@ -6,6 +6,7 @@
 use super::columns::{Evaluation, Sample};
 use super::parameters::Parameters;
 use crate::Vector;
+use crate::numeric::lanes::Lane;
 
 /// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
 const SAMPLES: usize = 6;
@@ -31,14 +32,21 @@ impl Line {
 }
 
 /// Buffers of the search.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rays {
+#[derive(Debug)]
+pub(super) struct Rays<L> {
     lines: Vec<Line>,
-    places: Sample,
-    evaluation: Evaluation,
+    places: Sample<L>,
+    evaluation: Evaluation<L>,
 }
 
-impl Rays {
+impl<L: Lane> Default for Rays<L> {
+    fn default() -> Self {
+        let (places, evaluation) = (Sample::default(), Evaluation::default());
+        Self { lines: Vec::new(), places, evaluation }
+    }
+}
+
+impl<L: Lane> Rays<L> {
     /// Adds to `found` the place on each line from `from` that lies deepest in the body (least signed distance),
     /// for the lines that enter it.
     pub(super) fn deepest<'a>(
@@ -53,6 +61,9 @@ impl Rays {
             let (low, high) = near(s, from, end)?;
             Some(Line { way: end - from, low, high, deepest: low, depth: f64::INFINITY })
         }));
+        if self.lines.is_empty() {
+            return;
+        }
         let mut halvings = HALVINGS;
         if s.family.is_ring() || s.family.is_deformed() {
             self.choose_valleys(s, from);
@@ -64,7 +75,7 @@ impl Rays {
             self.evaluation.fill_normals(s, &self.places);
             for (i, line) in self.lines.iter_mut().enumerate() {
                 let t = middle(line);
-                line.take(t, self.evaluation.distances[i]);
+                line.take(t, self.evaluation.distances[i].wide());
                 let slope = self.evaluation.outwards(i).dot(&line.way);
                 if slope > 0.0 { line.high = t } else { line.low = t }
             }
@@ -81,7 +92,7 @@ impl Rays {
             self.places.set(self.lines.iter().map(|l| from + l.way * at(l)));
             self.evaluation.fill_distances(s, &self.places);
             for (line, depth) in self.lines.iter_mut().zip(&self.evaluation.distances) {
-                line.take(at(line), *depth);
+                line.take(at(line), depth.wide());
             }
         }
         for line in &mut self.lines {

@@ -170,7 +170,7 @@ mod tests {
             let s = some_body(Family::ALL[case % 6], &mut random);
             let mut points = Vec::new();
             sample(&s, 200, &mut random, &mut points);
-            let mut all = Evaluation::default();
+            let mut all = Evaluation::<f64>::default();
             all.fill_distances(&s, &Sample::new(points.iter().copied()));
             let worst = all.distances[..200].iter().fold(0.0f64, |m, d| m.max(d.abs()));
             assert!(worst < 1e-6, "case {case}: {worst}");

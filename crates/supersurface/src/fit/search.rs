@@ -58,17 +58,17 @@ pub(super) fn best(cloud: &Normalised, family: Family) -> Hypothesis {
         let terms = Terms { sight: Sight::Partly, ..cloud.terms.clone() };
         if let Some(mut parts) = in_part(cloud, &terms, &pool, &mut work) {
             switch(cloud, &terms, &mut parts, &mut work);
-            return finish(cloud, &terms, &parts, &mut work);
+            return finish(cloud, &terms, &parts);
         }
     }
-    let found = finish(cloud, &cloud.terms, &pool, &mut work);
+    let found = finish(cloud, &cloud.terms, &pool);
     let thorough_view = cloud.terms.sight == Sight::OneSide && cloud.effort == Effort::Thorough;
     if !thorough_view || correlation(cloud, &found) < ASTRAY {
         return found;
     }
     let points: Vec<Vector> = cloud.coarse.points().collect();
     search(cloud, family, &turned_frames(&points, &cloud.terms), &mut pool, &mut work);
-    finish(cloud, &cloud.terms, &pool, &mut work)
+    finish(cloud, &cloud.terms, &pool)
 }
 
 /// The best bodies of a pool by the terms of bodies of which a part is seen, where the points say that it is so: by what
@@ -77,7 +77,7 @@ fn in_part(
     cloud: &Normalised,
     terms: &Terms,
     pool: &[Hypothesis],
-    work: &mut Workspace,
+    work: &mut Workspace<f32>,
 ) -> Option<Vec<Hypothesis>> {
     let Sight::AllAround { volume } = cloud.terms.sight else { return None };
     let plainly = shows_a_part(cloud, &pool[0]);
@@ -100,7 +100,7 @@ fn search(
     family: Family,
     frames: &[Frame],
     pool: &mut Vec<Hypothesis>,
-    work: &mut Workspace,
+    work: &mut Workspace<f32>,
 ) {
     let terms = &cloud.terms;
     let (shortlist, most) = (SHORTLIST[cloud.effort as usize], KEPT[cloud.effort as usize]);
@@ -111,7 +111,7 @@ fn search(
     let starts = starts(frames, terms, family, holes);
     let mut ranked: Vec<Hypothesis> = starts.iter().map(|s| begin(s, terms)).collect();
     let half = starts.len().div_ceil(2).max(LEAST_KEPT);
-    let rounds: &[(&Sample, usize, usize)] = match (terms.sight, sketch) {
+    let rounds: &[(&Sample<f32>, usize, usize)] = match (terms.sight, sketch) {
         (Sight::OneSide, true) => &[(&cloud.sketch, 4, shortlist), (&cloud.coarse, 6, most)],
         (Sight::OneSide, false) if starts.len() > MANY => {
             &[(&cloud.coarse, 4, SKETCHED), (&cloud.coarse, 6, most)]
@@ -158,7 +158,12 @@ fn search(
 }
 
 /// Adds the relatives of the best, as long as that helps.
-fn switch(cloud: &Normalised, terms: &Terms, pool: &mut Vec<Hypothesis>, work: &mut Workspace) {
+fn switch(
+    cloud: &Normalised,
+    terms: &Terms,
+    pool: &mut Vec<Hypothesis>,
+    work: &mut Workspace<f32>,
+) {
     for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
         for relative in relatives(&best.parameters, terms.only_eye()) {

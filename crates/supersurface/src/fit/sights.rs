@@ -7,7 +7,8 @@
 
 use super::columns::{Evaluation, Sample};
 use super::parameters::{POSITION, Parameters};
-use crate::numeric::lanes::{Job, dispatch};
+use crate::numeric::column::Column;
+use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Steps along the ray.
 const STEPS: usize = 2;
@@ -17,50 +18,58 @@ const GRAZING: f64 = 0.15;
 const LONGEST: f64 = 0.3;
 
 /// Buffers of the way along the rays.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Sights {
-    ways: Vec<f64>,
-    secants: Vec<f64>,
-    sample: Sample,
-    there: Evaluation,
+#[derive(Debug)]
+pub(super) struct Sights<L> {
+    ways: Column<L>,
+    secants: Column<L>,
+    sample: Sample<L>,
+    there: Evaluation<L>,
 }
 
-impl Sights {
+impl<L: Lane> Default for Sights<L> {
+    fn default() -> Self {
+        let (sample, there) = (Sample::default(), Evaluation::default());
+        Self { ways: Column::default(), secants: Column::default(), sample, there }
+    }
+}
+
+impl<L: Lane> Sights<L> {
     /// Fills `out` with the residuals of the points along the rays in which they were seen, positive before the surface,
     /// and their derivatives.
-    pub(super) fn fill(&mut self, s: &Parameters, points: &Sample, out: &mut Evaluation) {
+    pub(super) fn fill(&mut self, s: &Parameters, points: &Sample<L>, out: &mut Evaluation<L>) {
+        let longest = L::of(LONGEST);
         self.ways.clear();
-        self.ways.resize(points.rays()[0].len(), 0.0);
-        self.secants.resize(self.ways.len(), 0.0);
+        self.ways.resize(points.rays()[0].len(), L::of(0.0));
+        self.secants.resize(self.ways.len(), L::of(0.0));
         for _ in 0..STEPS {
             self.sample.set_along(points, &self.ways);
             self.there.fill(s, &self.sample);
             dispatch(Secants { at: &self.there, points, out: &mut self.secants });
-            let steps = self.there.distances.iter().zip(&self.secants).map(|(d, c)| d * c);
+            let steps = self.there.distances.iter().zip(&self.secants).map(|(d, c)| *d * *c);
             for (way, step) in self.ways.iter_mut().zip(steps) {
-                *way += step.clamp(-LONGEST, LONGEST);
+                *way += step.least(longest).most(-longest);
             }
         }
         self.sample.set_along(points, &self.ways);
         out.fill(s, &self.sample);
         dispatch(Secants { at: out, points, out: &mut self.secants });
         for ((d, c), way) in out.distances.iter_mut().zip(&self.secants).zip(&self.ways) {
-            *d = way + *d * c;
+            *d = *way + *d * *c;
         }
         for (_, row) in out.rows.iter_mut().enumerate().filter(|(k, _)| s.family.has(*k)) {
-            row.iter_mut().zip(&self.secants).for_each(|(v, c)| *v *= c);
+            row.iter_mut().zip(&self.secants).for_each(|(v, c)| *v = *v * *c);
         }
     }
 }
 
 /// Of the angles between the rays and the normals of the surface that faces them, but for the floor of the cosine.
-struct Secants<'a> {
-    at: &'a Evaluation,
-    points: &'a Sample,
-    out: &'a mut [f64],
+struct Secants<'a, L> {
+    at: &'a Evaluation<L>,
+    points: &'a Sample<L>,
+    out: &'a mut [L],
 }
 
-impl Job for Secants<'_> {
+impl<L: Lane> Job for Secants<'_, L> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let [x, y, z] = self.points.rays();
@@ -69,9 +78,10 @@ impl Job for Secants<'_> {
         for (out, (((x, y), z), ((u, v), w))) in
             self.out.iter_mut().zip(x.iter().zip(y).zip(z).zip(inwards))
         {
-            let length = (u * u + v * v + w * w).sqrt();
-            let cosine = (x * u + y * v + z * w) / (length + 1e-12);
-            *out = 1.0 / if cosine > GRAZING { cosine } else { GRAZING };
+            let square = *u * *u + *v * *v + *w * *w;
+            let along = *x * *u + *y * *v + *z * *w;
+            let cosine = along * square.most(L::of(1e-24)).inverse_sqrt::<FUSED>();
+            *out = L::of(1.0) / cosine.most(L::of(GRAZING));
         }
     }
 }

@@ -2,12 +2,14 @@
 
 use super::columns::{Evaluation, Sample};
 use super::noise::Mixture;
-use super::parameters::{COUNT, Family, Parameters, Row};
+use super::normal::{Normal, Sum, Sums};
+use super::parameters::{Family, Parameters};
 use super::rays::Rays;
 use super::sights::Sights;
-use super::terms::{Beside, Normal, Terms};
+use super::terms::{Beside, Terms};
 use crate::Vector;
-use crate::numeric::lanes::{Job, dispatch, dot};
+use crate::numeric::column::Column;
+use crate::numeric::lanes::Lane;
 
 /// A body with its noise and its cost (negative log-likelihood of the points plus all other terms).
 #[derive(Clone, Copy, Debug)]
@@ -82,24 +84,40 @@ const LEASHED: f64 = 0.01;
 const LOOKS: usize = 2;
 
 /// Buffers that are used again from one hypothesis to the next.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Workspace {
-    now: Evaluation,
-    trial: Evaluation,
-    weights: Vec<f64>,
-    weighted: Vec<f64>,
+#[derive(Debug)]
+pub(super) struct Workspace<L = f64> {
+    now: Evaluation<L>,
+    trial: Evaluation<L>,
+    weights: Column<L>,
+    sums: Vec<Sums<L>>,
     intruders: Vec<Vector>,
-    intrusions: Sample,
-    intruding: Evaluation,
-    search: Rays,
-    sights: Sights,
+    intrusions: Sample<L>,
+    intruding: Evaluation<L>,
+    search: Rays<L>,
+    sights: Sights<L>,
 }
 
-impl Workspace {
+impl<L: Lane> Default for Workspace<L> {
+    fn default() -> Self {
+        Self {
+            now: Evaluation::default(),
+            trial: Evaluation::default(),
+            weights: Column::default(),
+            sums: Vec::new(),
+            intruders: Vec::new(),
+            intrusions: Sample::default(),
+            intruding: Evaluation::default(),
+            search: Rays::default(),
+            sights: Sights::default(),
+        }
+    }
+}
+
+impl<L: Lane> Workspace<L> {
     /// The points' part of the normal equations at the present body.
     fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> Normal {
         let cost = mixture.weigh(&self.now.distances, points, &mut self.weights);
-        let mut normal = normal_equations(family, &self.now, &self.weights, &mut self.weighted);
+        let mut normal = Normal::of_points(family, &self.now, &self.weights, &mut self.sums);
         normal.cost = cost;
         normal
     }
@@ -111,7 +129,7 @@ impl Workspace {
         s: &Parameters,
         [points, rays]: [usize; 2],
         scale: f64,
-        to: &mut Normal,
+        to: &mut impl Sum,
     ) {
         let beside = Beside { points, scale, rays, intrusions: &self.intrusions };
         terms.add(s, &beside, &mut self.intruding, to);
@@ -125,7 +143,7 @@ impl Workspace {
     }
 
     /// Evaluates the points for a body that is tried.
-    fn evaluate(&mut self, s: &Parameters, points: &Sample, schedule: &Schedule) {
+    fn evaluate(&mut self, s: &Parameters, points: &Sample<L>, schedule: &Schedule) {
         if schedule.along_rays {
             self.sights.fill(s, points, &mut self.trial);
         } else {
@@ -138,52 +156,13 @@ impl Workspace {
     }
 }
 
-/// `Jᵀ W J` (its lower triangle) and `Jᵀ W d`; `weighted` is a buffer.
-pub(super) fn normal_equations(
-    family: Family,
-    evaluation: &Evaluation,
-    weights: &[f64],
-    weighted: &mut Vec<f64>,
-) -> Normal {
-    weighted.resize(weights.len(), 0.0);
-    let mut normal = Normal::zero();
-    dispatch(Accumulate { family, evaluation, weights, weighted, normal: &mut normal });
-    normal
-}
-
-/// The same, a column at a time.
-struct Accumulate<'a> {
-    family: Family,
-    evaluation: &'a Evaluation,
-    weights: &'a [f64],
-    weighted: &'a mut [f64],
-    normal: &'a mut Normal,
-}
-
-impl Job for Accumulate<'_> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Evaluation { distances, rows } = self.evaluation;
-        let has = |(i, _): &(usize, &Vec<f64>)| self.family.has(*i);
-        for (i, row) in rows.iter().enumerate().filter(has) {
-            for ((w, weight), value) in self.weighted.iter_mut().zip(self.weights).zip(row) {
-                *w = weight * value;
-            }
-            self.normal.gradient[i] = dot::<FUSED>(self.weighted, distances);
-            for (j, other) in rows[..=i].iter().enumerate().filter(has) {
-                self.normal.matrix[i][j] = dot::<FUSED>(self.weighted, other);
-            }
-        }
-    }
-}
-
 /// Improves a hypothesis until a round gains nothing or the schedule ends.
-pub(super) fn refine(
+pub(super) fn refine<L: Lane>(
     start: &Hypothesis,
-    points: &Sample,
+    points: &Sample<L>,
     terms: &Terms,
     schedule: &Schedule,
-    work: &mut Workspace,
+    work: &mut Workspace<L>,
 ) -> Hypothesis {
     let mut s = start.parameters;
     let mut mixture = start.mixture;
@@ -207,15 +186,14 @@ pub(super) fn refine(
         let before = normal.cost;
         let mut gain = None;
         for _ in 0..4 {
-            let Some(step) = solve(&s, &normal, damping) else {
+            let Some(step) = normal.step(&s, damping) else {
                 damping *= 10.0;
                 continue;
             };
             let next = s.stepped(&step);
             work.evaluate(&next, points, schedule);
-            let mut after = Normal::zero();
+            let mut after = mixture.cost(&work.trial.distances, n);
             work.add(terms, &next, counts, mixture.scale, &mut after);
-            let after = after.cost + mixture.cost(&work.trial.distances, n);
             if after < before - LEAST_GAIN {
                 (s, gain) = (next, Some(before - after));
                 work.accept();
@@ -242,61 +220,10 @@ pub(super) fn refine(
     }
     mixture.update(&work.now.distances, n, [NOISE_FLOOR, noisiest(&s)], 6);
     work.look(&s, terms, schedule.rays);
-    let mut extra = Normal::zero();
-    work.add(terms, &s, counts, mixture.scale, &mut extra);
-    let cost = mixture.cost(&work.now.distances, n)
-        + extra.cost
+    let mut cost = mixture.cost(&work.now.distances, n)
         + terms.spread_cost(&s, n)
         + terms.facing_cost(&s, &mixture, points, &work.now);
+    work.add(terms, &s, counts, mixture.scale, &mut cost);
     let cost = if cost.is_finite() { cost } else { f64::MAX };
     Hypothesis { parameters: s, mixture, cost, rounds, stopped, corrected: false }
-}
-
-/// The damped step `-(H + λ diag H)⁻¹ b` over the parameters that may move; `None` when the matrix is not
-/// positive definite.
-fn solve(s: &Parameters, normal: &Normal, damping: f64) -> Option<Row> {
-    let mut free = [0usize; COUNT];
-    let mut n = 0;
-    for i in 0..COUNT {
-        if s.family.has(i) && !s.is_held(i, normal.gradient[i]) {
-            free[n] = i;
-            n += 1;
-        }
-    }
-    let mut l = [[0.0; COUNT]; COUNT];
-    let mut x = [0.0; COUNT];
-    for i in 0..n {
-        for j in 0..=i {
-            l[i][j] = normal.matrix[free[i]][free[j]];
-        }
-        l[i][i] += damping * l[i][i] + 1e-3;
-        x[i] = -normal.gradient[free[i]];
-    }
-    for i in 0..n {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            let value = l[i][j] - dot;
-            if i == j {
-                if !(value > 0.0 && value.is_finite()) {
-                    return None;
-                }
-                l[i][i] = value.sqrt();
-            } else {
-                l[i][j] = value / l[j][j];
-            }
-        }
-    }
-    for i in 0..n {
-        let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-    for i in (0..n).rev() {
-        let dot: f64 = (i + 1..n).map(|k| l[k][i] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-    let mut step = [0.0; COUNT];
-    for i in 0..n {
-        step[free[i]] = x[i];
-    }
-    Some(step)
 }

@@ -4,9 +4,11 @@
 use super::centred::Placement;
 use super::columns::{Evaluation, Sample, distances};
 use super::noise::Mixture;
+use super::normal::Sum;
 use super::parameters::{COUNT, EXPONENT, POSITION, Parameters, RING, ROTATION, Row};
 use super::rays::Rays;
 use crate::Vector;
+use crate::numeric::lanes::Lane;
 use crate::numeric::superellipse::{dual_exponent, log_layer};
 use crate::shape::SupportMap;
 
@@ -61,34 +63,6 @@ pub(super) struct Terms {
     pub(super) reach: f64,
 }
 
-/// The normal equations that a set of weighted rows adds up to: `½ Σ w r²` and its derivatives.
-#[derive(Clone, Debug)]
-pub(super) struct Normal {
-    pub(super) matrix: [[f64; COUNT]; COUNT],
-    pub(super) gradient: Row,
-    pub(super) cost: f64,
-}
-
-impl Normal {
-    pub(super) fn zero() -> Self {
-        Self { matrix: [[0.0; COUNT]; COUNT], gradient: [0.0; COUNT], cost: 0.0 }
-    }
-
-    /// Adds one residual: only the lower triangle of the matrix is kept.
-    #[inline]
-    pub(super) fn add(&mut self, residual: f64, weight: f64, row: &Row) {
-        self.cost += 0.5 * weight * residual * residual;
-        // most terms speak of few parameters
-        for i in (0..COUNT).filter(|i| row[*i] != 0.0) {
-            let wi = weight * row[i];
-            self.gradient[i] += wi * residual;
-            for (entry, value) in self.matrix[i].iter_mut().zip(&row[..=i]) {
-                *entry += wi * value;
-            }
-        }
-    }
-}
-
 /// Standard deviation of the logarithm of an extent about the mean of the three: weak on purpose.
 const ASPECT_DEVIATION: f64 = 1.2;
 
@@ -104,7 +78,7 @@ const LEAST_HIDING: f64 = 0.05;
 
 /// What the terms stand beside.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Beside<'a> {
+pub(super) struct Beside<'a, L> {
     /// Number of points.
     pub(super) points: usize,
     /// Present scale of the noise.
@@ -112,7 +86,7 @@ pub(super) struct Beside<'a> {
     /// Number of lines of sight that were looked at.
     pub(super) rays: usize,
     /// Where they lie deepest in the body, held while the body takes a step.
-    pub(super) intrusions: &'a Sample,
+    pub(super) intrusions: &'a Sample<L>,
 }
 
 /// Weight of the reach against the points: a body twice the reach costs each point half a nat.
@@ -147,12 +121,12 @@ impl Terms {
 
     /// What the points on sides that face away from the sensor cost: it cannot have seen them there, so they
     /// are outliers. At a rim noise carries points around the edge; so a step towards the sensor must lead into the body.
-    pub(super) fn facing_cost(
+    pub(super) fn facing_cost<L: Lane>(
         &self,
         s: &Parameters,
         mixture: &Mixture,
-        points: &Sample,
-        evaluation: &Evaluation,
+        points: &Sample<L>,
+        evaluation: &Evaluation<L>,
     ) -> f64 {
         if !points.has_rays() {
             return 0.0;
@@ -166,16 +140,16 @@ impl Terms {
         let before = suspects.iter().map(|i| points.point(*i) - points.ray(*i) * step);
         let depths = distances(s, before);
         let hidden = suspects.iter().zip(depths).filter(|(_, d)| *d < -0.25 * step);
-        hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i])).sum()
+        hidden.map(|(i, _)| mixture.price_of_leaving(evaluation.distances[*i].wide())).sum()
     }
 
     /// Adds all terms; `intruding` is a buffer.
-    pub(super) fn add(
+    pub(super) fn add<L: Lane>(
         &self,
         s: &Parameters,
-        beside: &Beside<'_>,
-        intruding: &mut Evaluation,
-        to: &mut Normal,
+        beside: &Beside<'_, L>,
+        intruding: &mut Evaluation<L>,
+        to: &mut impl Sum,
     ) {
         self.add_support(s, beside.points, beside.scale, to);
         add_intrusions(s, beside, intruding, to);
@@ -189,14 +163,14 @@ impl Terms {
     }
 
     /// `½ w ln²(h_i / r)` for every half extent above `r`, the reach or a multiple of it.
-    fn add_reach(&self, s: &Parameters, points: usize, to: &mut Normal) {
+    fn add_reach(&self, s: &Parameters, points: usize, to: &mut impl Sum) {
         let most = match self.sight {
-            Sight::OneSide => self.reach,
-            Sight::Partly => PART_REACH * self.reach,
+            Sight::OneSide => self.reach.ln(),
+            Sight::Partly => (PART_REACH * self.reach).ln(),
             Sight::AllAround { .. } => return,
         };
-        for (i, half) in s.half_extents().iter().enumerate() {
-            let excess = (half / most).ln();
+        for (i, half) in s.log_half_extents().iter().enumerate() {
+            let excess = half - most;
             if excess > 0.0 {
                 let mut row = [0.0; COUNT];
                 row[i] = 1.0;
@@ -208,17 +182,17 @@ impl Terms {
         }
     }
 
-    fn add_support(&self, s: &Parameters, points: usize, scale: f64, to: &mut Normal) {
+    fn add_support<S: Sum>(&self, s: &Parameters, points: usize, scale: f64, to: &mut S) {
         let Some(support) = self.support else { return };
         let sigma = scale.max(support.tolerance);
         let weight = 0.2 * points as f64 / (sigma * sigma);
-        if let Some((height, row)) = extreme(s, &support.normal, support.offset)
+        if let Some((height, row)) = extreme::<S>(s, &support.normal, support.offset)
             && (support.standing || height < 0.0)
         {
             to.add(height, weight, &row);
         }
         // the highest point is the lowest of the other side
-        let below = |top: f64| extreme(s, &-support.normal, top - support.offset);
+        let below = |top: f64| extreme::<S>(s, &-support.normal, top - support.offset);
         if let Some((below, row)) = support.top.and_then(below)
             && below < 0.0
         {
@@ -228,12 +202,12 @@ impl Terms {
 
     /// The points at which free lines of sight lie deepest in the body, into `found`; `own` says whether the
     /// lines of sight to the object's own points are looked at too.
-    pub(super) fn intrusions(
+    pub(super) fn intrusions<L: Lane>(
         &self,
         s: &Parameters,
         rays: usize,
         own: bool,
-        search: &mut Rays,
+        search: &mut Rays<L>,
         found: &mut Vec<Vector>,
     ) {
         found.clear();
@@ -275,19 +249,26 @@ fn some(points: &[Vector], count: usize) -> impl Iterator<Item = &Vector> {
 }
 
 /// Adds the depths of the intrusions; `rays` is how many lines of sight were looked at.
-fn add_intrusions(s: &Parameters, at: &Beside<'_>, there: &mut Evaluation, to: &mut Normal) {
+fn add_intrusions<L: Lane, S: Sum>(
+    s: &Parameters,
+    at: &Beside<'_, L>,
+    there: &mut Evaluation<L>,
+    to: &mut S,
+) {
     let sigma = at.scale.max(0.02);
     // an eighth of the points' say, however many rays there are
     let weight = 0.12 * at.points as f64 / at.rays.max(1) as f64 / (sigma * sigma);
     if at.intrusions.len() == 0 {
         return;
     }
-    there.fill(s, at.intrusions);
-    for i in 0..at.intrusions.len() {
-        let d = there.distances[i];
-        if d < 0.0 {
-            to.add(d, weight, &there.row(s, i));
-        }
+    if S::ROWS {
+        there.fill(s, at.intrusions);
+    } else {
+        there.fill_distances(s, at.intrusions);
+    }
+    for i in (0..at.intrusions.len()).filter(|i| there.distances[*i].wide() < 0.0) {
+        let row = if S::ROWS { there.row(s, i) } else { [0.0; COUNT] };
+        to.add(there.distances[i].wide(), weight, &row);
     }
 }
 
@@ -297,9 +278,9 @@ fn add_intrusions(s: &Parameters, at: &Beside<'_>, there: &mut Evaluation, to: &
 /// `h = ‖(ρ, a3 m3)‖` with `ρ = ‖(a1 m1, a2 m2)‖` (FORMULAS §2), and that of a toroid is `h + a4 ρ`. As for the
 /// gauge, `d ln ‖(u, v)‖ = w d ln u + (1 - w) d ln v`, here with `- S(w)/2 dε`; the support point is
 /// `∂h/∂m`, which by the envelope theorem may be held while the body turns.
-fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
+fn extreme<S: Sum>(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
     if s.family.is_deformed() {
-        return extreme_of_deformed(s, normal, offset);
+        return extreme_of_deformed::<S>(s, normal, offset);
     }
     let m = -(s.rotation.inverse_transform_vector(normal));
     let log = |i: usize| m[i].abs().max(1e-9).ln() + s.log_axes[i];
@@ -309,12 +290,15 @@ fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
     let tube = whole.log_norm.exp();
     let radius = planar.log_norm.exp();
     let ring = if s.family.is_ring() { s.ring * radius } else { 0.0 };
+    let height = normal.dot(&s.position) + offset - tube - ring;
+    let mut row = [0.0; COUNT];
+    if !S::ROWS {
+        return Some((height, row));
+    }
     // derivatives of the support function by ln a1, ln a2, ln a3
     let across = tube * whole.first + ring;
     let by_axes = [across * planar.first, across * planar.second, tube * whole.second];
     let p = Vector::from_fn(|i, _| by_axes[i] / m[i].abs().max(1e-9).copysign(m[i]));
-    let height = normal.dot(&s.position) + offset - tube - ring;
-    let mut row = [0.0; COUNT];
     let turn = m.cross(&p);
     for i in 0..3 {
         row[i] = -by_axes[i];
@@ -331,36 +315,37 @@ fn extreme(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
 
 /// The same for a deformed body: its surface is parallel to the plane at the lowest point, so that it rises as the
 /// first-order distance of that point does.
-fn extreme_of_deformed(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
+fn extreme_of_deformed<S: Sum>(s: &Parameters, normal: &Vector, offset: f64) -> Option<(f64, Row)> {
     let body = s.surface(&Placement::identity()).ok()?;
     let lowest = body.support_point(&-normal).coords;
-    let mut there = Evaluation::default();
+    let height = normal.dot(&lowest) + offset;
+    if !S::ROWS {
+        return Some((height, [0.0; COUNT]));
+    }
+    let mut there = Evaluation::<f64>::default();
     there.fill(s, &Sample::new(std::iter::once(lowest)));
-    Some((normal.dot(&lowest) + offset, there.row(s, 0)))
+    Some((height, there.row(s, 0)))
 }
 
 /// `λ Σ ln h_i` over the three half extents.
-fn add_size(s: &Parameters, weight: f64, to: &mut Normal) {
-    for (i, half) in s.half_extents().iter().enumerate() {
-        to.cost += weight * half.ln();
-        to.gradient[i] += weight;
-        if s.family.is_ring() && i < 2 {
-            to.gradient[RING] += weight / (1.0 + s.ring);
-        }
+fn add_size(s: &Parameters, weight: f64, to: &mut impl Sum) {
+    let mut row = [0.0; COUNT];
+    row[..3].fill(weight);
+    if s.family.is_ring() {
+        row[RING] = 2.0 * weight / (1.0 + s.ring);
     }
+    to.add_slope(weight * s.log_half_extents().iter().sum::<f64>(), &row);
 }
 
 /// `½ Σ (ln h_i - mean)² / σ²` over the three half extents.
-fn add_aspect(s: &Parameters, to: &mut Normal) {
-    let logs = s.half_extents().map(f64::ln);
+fn add_aspect(s: &Parameters, to: &mut impl Sum) {
+    let logs = s.log_half_extents();
     let mean = logs.iter().sum::<f64>() / 3.0;
     let by_ring = 1.0 / (1.0 + s.ring);
     for i in 0..3 {
-        let mut row = [-1.0 / 3.0; COUNT];
+        let mut row = [0.0; COUNT];
+        row[..3].fill(-1.0 / 3.0);
         row[i] += 1.0;
-        for value in row.iter_mut().skip(3) {
-            *value = 0.0;
-        }
         if s.family.is_ring() {
             row[RING] = (row[0] + row[1]) * by_ring;
         }
@@ -372,6 +357,7 @@ fn add_aspect(s: &Parameters, to: &mut Normal) {
 mod tests {
     use super::*;
     use crate::fit::columns::tests::some_body;
+    use crate::fit::normal::Normal;
     use crate::fit::parameters::Family;
     use crate::numeric::random::Stream;
 
@@ -386,12 +372,12 @@ mod tests {
                 s.exponents = s.exponents.map(|e| e.min(1.0));
             }
             let normal = Vector::from_fn(|_, _| random.normal()).normalize();
-            let (_, row) = extreme(&s, &normal, 0.3).unwrap();
+            let (_, row) = extreme::<Normal>(&s, &normal, 0.3).unwrap();
             for k in (0..COUNT).filter(|k| family.has(*k)) {
                 let at = |h: f64| {
                     let mut step = [0.0; COUNT];
                     step[k] = h;
-                    extreme(&s.stepped(&step), &normal, 0.3).unwrap().0
+                    extreme::<Normal>(&s.stepped(&step), &normal, 0.3).unwrap().0
                 };
                 let numeric = (at(1e-6) - at(-1e-6)) / 2e-6;
                 assert!((numeric - row[k]).abs() < 1e-4, "case {case} parameter {k}: {numeric}");

@@ -1,5 +1,6 @@
 //! Floor 1: the small mathematics that every shape is made of.
 
+pub mod column;
 pub mod dirichlet;
 pub mod gauss;
 pub mod lanes;

@@ -62,7 +62,7 @@ impl Marched for Bent {
             let a = a.abs().most(f64::TINY).copysign(a);
             // the tangent of half the angle, which is a/(h + b)
             let half = if b >= 0.0 { a / inner } else { inner / a };
-            let per = 2.0 * arc_tangent_ratio::<FUSED>(half * half);
+            let per = 2.0 * arc_tangent_ratio::<FUSED, f64>(half * half);
             u[2][i] = if b >= 0.0 { p[2][i] * per / inner } else { half * per / k };
             u[0][i] += nx * (r - across);
             u[1][i] += ny * (r - across);
