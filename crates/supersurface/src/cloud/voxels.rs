@@ -55,24 +55,38 @@ impl<'a> VoxelGrid<'a> {
         if !(cell > 0.0 && cell.is_finite()) {
             return None;
         }
-        let mut sorted: Vec<(u128, u32)> = indices
-            .into_iter()
-            .filter_map(|i| {
-                let p = points.get(i as usize)?;
-                let finite = p.coords.iter().all(|c| c.is_finite());
-                finite.then(|| (pack(cube(p, cell)), i))
-            })
-            .collect();
-        sorted.sort_unstable();
-        let (mut cubes, mut starts) = (Vec::new(), Vec::new());
-        for (at, entry) in sorted.iter().enumerate() {
-            if cubes.last() != Some(&entry.0) {
-                cubes.push(entry.0);
-                starts.push(at as u32);
+        // points that follow each other often lie in one cube: such runs are sorted, not points
+        let (mut named, mut runs): (Vec<u32>, Vec<(u128, u32)>) = (Vec::new(), Vec::new());
+        let mut rising = true;
+        for i in indices {
+            let Some(p) = points.get(i as usize) else { continue };
+            if !p.coords.iter().all(|c| c.is_finite()) {
+                continue;
             }
+            let key = pack(cube(p, cell));
+            if runs.last().is_none_or(|(last, _)| *last != key) {
+                runs.push((key, named.len() as u32));
+            }
+            rising &= named.last().is_none_or(|last| *last < i);
+            named.push(i);
         }
-        starts.push(sorted.len() as u32);
-        let entries = sorted.into_iter().map(|e| e.1).collect();
+        let ends = runs.iter().skip(1).map(|r| r.1).chain([named.len() as u32]);
+        let mut runs: Vec<(u128, u32, u32)> =
+            runs.iter().zip(ends).map(|((key, from), to)| (*key, *from, to)).collect();
+        runs.sort_unstable();
+        let (mut cubes, mut starts) = (Vec::new(), Vec::new());
+        let mut entries = Vec::with_capacity(named.len());
+        for (key, from, to) in runs {
+            if cubes.last() != Some(&key) {
+                cubes.push(key);
+                starts.push(entries.len() as u32);
+            }
+            entries.extend_from_slice(&named[from as usize..to as usize]);
+        }
+        starts.push(entries.len() as u32);
+        if !rising {
+            starts.windows(2).for_each(|s| entries[s[0] as usize..s[1] as usize].sort_unstable());
+        }
         Some(Self { points, cell, entries, cubes, starts })
     }
 
@@ -110,6 +124,34 @@ impl<'a> VoxelGrid<'a> {
                     }
                 }
             }
+        }
+    }
+
+    /// Calls `visit(members, around)` for every cube with the points in it and those in it and in the 26 about it, both in
+    /// the order of the cubes: for all points at once, which [`VoxelGrid::within`] looks up one by one.
+    pub fn neighbourhoods(&self, mut visit: impl FnMut(&[u32], &[u32])) {
+        let steps = [-1i64, 0, 1];
+        let columns: Vec<[i64; 2]> = steps.iter().flat_map(|x| steps.map(|y| [*x, y])).collect();
+        // each of the nine columns is followed by a cursor that only moves forwards
+        let mut cursors = vec![0usize; columns.len()];
+        let mut around = Vec::new();
+        for c in 0..self.occupied() {
+            let [x, y, z] = unpack(self.cubes[c]);
+            around.clear();
+            for (cursor, [dx, dy]) in cursors.iter_mut().zip(&columns) {
+                let (x, y) = (x + dx, y + dy);
+                if [x, y].iter().any(|v| !(0..SIDE).contains(v)) {
+                    continue;
+                }
+                let (first, last) = (pack([x, y, z - 1]), pack([x, y, z + 1]));
+                while *cursor < self.cubes.len() && self.cubes[*cursor] < first {
+                    *cursor += 1;
+                }
+                let ahead = self.cubes[*cursor..].iter().take_while(|cube| **cube <= last).count();
+                let [from, to] = [*cursor, *cursor + ahead].map(|c| self.starts[c] as usize);
+                around.extend_from_slice(&self.entries[from..to]);
+            }
+            visit(self.members(c), &around);
         }
     }
 
@@ -181,6 +223,26 @@ mod tests {
             let near = |i: &u32| (points[*i as usize] - p).norm() <= 0.03;
             assert_eq!(found, (0..500).filter(near).collect::<Vec<u32>>());
         }
+    }
+
+    #[test]
+    fn neighbourhoods_are_those_of_single_points() {
+        let mut random = Stream::new(4, 0);
+        let points: Vec<Point> =
+            (0..500).map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1)))).collect();
+        let grid = VoxelGrid::new(&points, 0..500, 0.03).unwrap();
+        let mut seen = 0;
+        grid.neighbourhoods(|members, around| {
+            for i in members {
+                seen += 1;
+                let p = points[*i as usize];
+                let mut found = Vec::new();
+                grid.within(&p, 0.03, |j, _| found.push(j));
+                let near = |j: &u32| (points[*j as usize] - p).norm_squared() <= 0.03 * 0.03;
+                assert_eq!(found, around.iter().copied().filter(near).collect::<Vec<u32>>());
+            }
+        });
+        assert_eq!(seen, 500);
     }
 
     #[test]

@@ -175,8 +175,9 @@ impl Picture {
         if z.is_nan() || z <= 0.0 {
             return None;
         }
-        let u = (r.dot(&self.right) / z - self.corner[0]) / self.cell;
-        let v = (r.dot(&self.down) / z - self.corner[1]) / self.cell;
+        let inverse = 1.0 / (z * self.cell);
+        let u = r.dot(&self.right) * inverse - self.corner[0] / self.cell;
+        let v = r.dot(&self.down) * inverse - self.corner[1] / self.cell;
         let inside = u >= 0.0 && v >= 0.0 && u < self.width as f64 && v < self.height as f64;
         inside.then(|| v as usize * self.width + u as usize)
     }

@@ -86,8 +86,8 @@ const LOOKS: usize = 2;
 /// Buffers that are used again from one hypothesis to the next.
 #[derive(Debug)]
 pub(super) struct Workspace<L = f64> {
-    now: Evaluation<L>,
-    trial: Evaluation<L>,
+    now: Box<Evaluation<L>>,
+    trial: Box<Evaluation<L>>,
     weights: Column<L>,
     sums: Vec<Sums<L>>,
     intruders: Vec<Vector>,
@@ -100,8 +100,8 @@ pub(super) struct Workspace<L = f64> {
 impl<L: Lane> Default for Workspace<L> {
     fn default() -> Self {
         Self {
-            now: Evaluation::default(),
-            trial: Evaluation::default(),
+            now: Box::default(),
+            trial: Box::default(),
             weights: Column::default(),
             sums: Vec::new(),
             intruders: Vec::new(),

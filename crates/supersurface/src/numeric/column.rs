@@ -27,8 +27,14 @@ impl<T: Copy> Column<T> {
     }
 
     /// Appends a number.
+    #[inline]
     pub fn push(&mut self, value: T) {
-        self.resize(self.count + 1, value);
+        if let Some(place) = self.room.get_mut(self.start + self.count) {
+            *place = value;
+            self.count += 1;
+        } else {
+            self.resize(self.count + 1, value);
+        }
     }
 
     /// Cuts the row, or appends `value` up to a length.

@@ -5,6 +5,8 @@
 //! `|p - c|/size + 4 (1 - n·m)`, with `c`, `m` the patch's mean place and normal (Papon et al., CVPR 2013,
 //! without colour).
 
+use std::ops::Range;
+
 use crate::cloud::{Neighbourhood, PointCloud, VoxelGrid};
 use crate::{Point, Vector};
 
@@ -90,9 +92,9 @@ struct Voxels {
     scale: f64,
     at: Vec<Point>,
     normal: Vec<Option<Vector>>,
-    /// The neighbours of each voxel, one after the other, and where each one's begin.
+    /// The neighbours of all voxels, and where among them each one's are.
     near: Vec<u32>,
-    starts: Vec<usize>,
+    ranges: Vec<Range<usize>>,
 }
 
 impl Voxels {
@@ -100,27 +102,39 @@ impl Voxels {
         let (radius, neighbour) = (scale * NORMAL_RADIUS, scale * NEIGHBOUR);
         let at: Vec<Point> = grid.representatives().map(|i| cloud.points[i as usize]).collect();
         let middle = at.iter().map(|p| p.coords).sum::<Vector>() / at.len().max(1) as f64;
-        let (mut near, mut starts, mut normal) = (Vec::new(), vec![0], Vec::new());
+        let mut normal = vec![None; at.len()];
+        // neighbours as they are found, and where those of each voxel are
+        let (mut found, mut ranges) = (Vec::new(), vec![0..0; at.len()]);
         if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, radius) {
-            for (i, p) in at.iter().enumerate() {
-                let mut around = Neighbourhood::default();
-                cells.within(p, radius, |j, square| {
-                    around.add(&(at[j as usize] - p));
-                    if square < neighbour * neighbour && j as usize != i {
-                        near.push(j);
+            let mut places: Vec<Point> = Vec::new();
+            cells.neighbourhoods(|members, around| {
+                places.clear();
+                places.extend(around.iter().map(|j| at[*j as usize]));
+                for i in members.iter().map(|i| *i as usize) {
+                    let (p, from) = (at[i], found.len());
+                    let mut beside = Neighbourhood::default();
+                    for (j, q) in around.iter().zip(&places) {
+                        let offset = q - p;
+                        let square = offset.norm_squared();
+                        if square <= radius * radius {
+                            beside.add(&offset);
+                            if square < neighbour * neighbour && *j as usize != i {
+                                found.push(*j);
+                            }
+                        }
                     }
-                });
-                starts.push(near.len());
-                let outward = cloud.viewpoint.map_or_else(|| p.coords - middle, |eye| eye - p);
-                normal.push(around.normal(&outward).map(|n| n.into_inner()));
-            }
+                    ranges[i] = from..found.len();
+                    let outward = cloud.viewpoint.map_or_else(|| p.coords - middle, |eye| eye - p);
+                    normal[i] = beside.normal(&outward).map(|n| n.into_inner());
+                }
+            });
         }
-        Self { scale, at, normal, near, starts }
+        Self { scale, at, normal, near: found, ranges }
     }
 
     /// The neighbours of a voxel.
     fn near(&self, i: usize) -> &[u32] {
-        &self.near[self.starts[i]..self.starts[i + 1]]
+        &self.near[self.ranges[i].clone()]
     }
 
     /// The patch of each voxel, and the patches.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bodies::{Around, ROUGHLY};
+use super::bodies::Around;
 use super::view::{Border, View};
 use super::{Piece, Reason};
 use crate::cloud::Sets;
@@ -103,7 +103,7 @@ fn insides(
         let members = (0..pieces.len()).filter(|j| sets.root(*j) == root);
         let mut points: Vec<u32> = members.flat_map(|j| &pieces[j].points).copied().collect();
         points.sort_unstable();
-        let Ok(body) = scene.fit_hollow(&points, &ROUGHLY) else { continue };
+        let Ok(body) = scene.fit_hollow(&points) else { continue };
         for j in 0..pieces.len() {
             let piece = &pieces[j];
             if sets.root(j) != sets.root(k)

@@ -53,37 +53,35 @@ pub(crate) struct Around<'a> {
 impl Around<'_> {
     /// The surface of the points named, seen from where the cloud was.
     pub(crate) fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
-        let free = match options.effort {
-            Effort::Rough => free_points_of(self.cloud, &thinned(object, SOLID), READINGS),
-            _ => free_points(self.cloud, object),
-        };
-        self.fit_view(object, self.cloud.viewpoint, &free, options)
+        match options.effort {
+            Effort::Rough => self.seen(object).fit(options),
+            _ => self
+                .view(object, self.cloud.viewpoint, free_points(self.cloud, object))
+                .fit(options),
+        }
     }
 
     /// The same for a cloud that shows nothing else.
     pub(crate) fn fit_alone(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
-        let free = outline_points(self.cloud, object);
-        self.fit_view(object, self.cloud.viewpoint, &free, options)
+        self.view(object, self.cloud.viewpoint, outline_points(self.cloud, object)).fit(options)
     }
 
-    /// The same for points of which a part may be seen from inside, as through the mouth of a cup.
-    pub(super) fn fit_hollow(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
-        self.fit_view(object, None, &[], options)
+    /// A rough one of points of which a part may be seen from inside, as through the mouth of a cup.
+    pub(super) fn fit_hollow(&self, object: &[u32]) -> Result<Fit, FitError> {
+        self.view(&thinned(object, FEW), None, Vec::new()).fit(&ROUGHLY)
     }
 
-    fn fit_view(
-        &self,
-        object: &[u32],
-        viewpoint: Option<Point>,
-        free: &[Point],
-        options: &FitOptions,
-    ) -> Result<Fit, FitError> {
-        let most = if options.effort == Effort::Rough { FEW } else { object.len().max(1) };
-        let some = thinned(object, most);
-        let points: Vec<Point> = some.iter().map(|i| self.cloud.points[*i as usize]).collect();
+    /// Points made ready for rough fits.
+    pub(super) fn seen(&self, object: &[u32]) -> Seen {
+        let free = free_points_of(self.cloud, &thinned(object, SOLID), READINGS);
+        self.view(&thinned(object, FEW), self.cloud.viewpoint, free)
+    }
+
+    fn view(&self, object: &[u32], viewpoint: Option<Point>, free: Vec<Point>) -> Seen {
+        let points: Vec<Point> = object.iter().map(|i| self.cloud.points[*i as usize]).collect();
         let heights = |t: &Plane| points.iter().map(|p| t.height(p)).fold(f64::INFINITY, f64::min);
         let standing = self.support.is_some_and(|t| heights(&t) < STANDING);
-        fit(&View { points: &points, viewpoint, support: self.support, standing, free }, options)
+        Seen { points, viewpoint, support: self.support, standing, free }
     }
 
     /// Heights of the lowest, the middle and the highest points over the support without the last 2 %, in metres; 0 without a
@@ -151,6 +149,24 @@ impl Around<'_> {
         }
         let middle = distances.len() / 2;
         *distances.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}
+
+/// What was seen of some points, for more than one fit.
+pub(super) struct Seen {
+    points: Vec<Point>,
+    viewpoint: Option<Point>,
+    support: Option<Plane>,
+    standing: bool,
+    free: Vec<Point>,
+}
+
+impl Seen {
+    /// Their surface.
+    pub(super) fn fit(&self, options: &FitOptions) -> Result<Fit, FitError> {
+        let Self { points, viewpoint, support, standing, free } = self;
+        let (viewpoint, support, standing) = (*viewpoint, *support, *standing);
+        fit(&View { points, viewpoint, support, standing, free }, options)
     }
 }
 

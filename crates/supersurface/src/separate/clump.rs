@@ -85,7 +85,8 @@ fn is_alike(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
     let off = |fit: &Fit| {
         parts.iter().map(|p| scene.rough(&p.points, fit) * p.points.len() as f64).sum::<f64>()
     };
-    let alike = |options| scene.fit(points, options).is_ok_and(|fit| off(&fit) < UNLIKE * own);
+    let seen = scene.seen(points);
+    let alike = |options| seen.fit(options).is_ok_and(|fit| off(&fit) < UNLIKE * own);
     alike(&ROUGHLY) || alike(&AS_RING)
 }
 

@@ -90,8 +90,7 @@ pub(super) fn is_one(scene: &Around<'_>, pieces: &[&Piece], hollow: bool) -> boo
     }
     let mut points: Vec<u32> = pieces.iter().flat_map(|p| &p.points).copied().collect();
     points.sort_unstable();
-    let fit =
-        if hollow { scene.fit_hollow(&points, &ROUGHLY) } else { scene.fit(&points, &ROUGHLY) };
+    let fit = if hollow { scene.fit_hollow(&points) } else { scene.fit(&points, &ROUGHLY) };
     fit.is_ok_and(|fit| pieces.iter().all(|p| scene.typical(&p.points, &fit) < POOR))
 }
 
@@ -155,7 +154,7 @@ impl Pair<'_> {
         {
             return None;
         }
-        let fit = self.scene.fit_hollow(&self.union(), &ROUGHLY).ok()?;
+        let fit = self.scene.fit_hollow(&self.union()).ok()?;
         let cost = self.cost(&fit);
         let [a, b] = self.pieces.map(|p| self.scene.facing(&p.points, &fit));
         let [inside, outside] = if a < b { self.pieces } else { [self.pieces[1], self.pieces[0]] };

@@ -121,11 +121,12 @@ fn shared_out(
 /// The surface of a side, a ring where that explains it and a convex body does not.
 fn body(scene: &Around<'_>, patches: &Patches, sides: &[bool], side: bool) -> Option<Fit> {
     let points = side_points(patches, sides, side);
-    let fit = scene.fit(&points, &ROUGHLY).ok()?;
+    let seen = scene.seen(&points);
+    let fit = seen.fit(&ROUGHLY).ok()?;
     if scene.rough(&points, &fit) < ROUGH * scene.noise {
         return Some(fit);
     }
-    let ring = scene.fit(&points, &AS_RING).ok();
+    let ring = seen.fit(&AS_RING).ok();
     let ring = ring.filter(|ring| scene.rough(&points, ring) < scene.rough(&points, &fit));
     Some(ring.unwrap_or(fit))
 }
