@@ -38,9 +38,13 @@ pub(crate) fn pieces(
     match (grid(cloud), sight.pixel, sight.eye) {
         (Some([w, _]), Some(pixel), Some(eye)) => {
             let near = |a: &Point, b: &Point| {
-                let range = (a - eye).norm().max((b - eye).norm());
-                let reach = gap + PIXELS * pixel * range;
-                (a - b).norm_squared() <= reach * reach
+                let square = (a - b).norm_squared();
+                // most are nearer than what needs no range
+                square <= gap * gap || {
+                    let range = (a - eye).norm().max((b - eye).norm());
+                    let reach = gap + PIXELS * pixel * range;
+                    square <= reach * reach
+                }
             };
             on_grid(&cloud.points, class, w, least, near)
         }

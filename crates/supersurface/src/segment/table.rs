@@ -126,7 +126,11 @@ impl Support {
         if !seen(p) {
             return Class::Missing;
         }
-        let height = self.plane.height(p) / self.margin(p, sight, options);
+        let height = self.plane.height(p);
+        if height <= 0.0 {
+            return Class::Other;
+        }
+        let height = height / self.margin(p, sight, options);
         if height > 1.0 {
             Class::Above
         } else if height > 0.5 {
@@ -263,7 +267,7 @@ pub(crate) fn refine(
     // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
     let (mut normal, mut offset) = (plane.normal(), plane.height(&Point::from(origin)));
-    let (mut relative, mut noise) = (0.0, 0.0);
+    let (mut relative, mut inside) = (0.0, Vec::new());
     let place = |r: &Reading| Point::from(r.ray + origin);
     let mut column = Vec::with_capacity(all.len());
     for _ in 0..2 {
@@ -271,21 +275,30 @@ pub(crate) fn refine(
         let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
         let outline = main_piece(&all, &normal, offset, PIECE_GAP, |r| ground.spot(&place(r)))?;
         let on = |r: &&Reading| outline.depth(&ground.spot(&place(r))) >= 0.0;
-        let inside: Vec<Reading> = all.iter().filter(on).copied().collect();
+        inside.clear();
+        inside.extend(all.iter().filter(on).copied());
         let mut share = 1.0;
         for _ in 0..3 {
             (normal, offset) = least_squares(inside.iter(), &normal, offset, share)?;
-            let heights = || inside.iter().map(|r| height(&normal, offset, r));
-            let near = || heights().filter(|(h, width)| h.abs() < *width);
-            relative = deviation(&mut column, near().map(|(h, width)| h / width))?;
-            noise = deviation(&mut column, near().map(|(h, _)| h))?;
+            let near = near_plane(&inside, &normal, offset);
+            relative = deviation(&mut column, near.map(|(h, width)| h / width))?;
             share = (2.5 * relative).clamp(0.05, 1.0);
         }
     }
+    let noise = deviation(&mut column, near_plane(&inside, &normal, offset).map(|(h, _)| h))?;
     let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
     let ground = Ground::of(&plane);
     let outline = main_piece(&all, &normal, offset, OBJECT_GAP, |r| ground.spot(&place(r)))?;
     Some(Support { plane, noise, relative, outline })
+}
+
+/// Heights over a plane, with their widths, of the readings that lie in it.
+fn near_plane<'a>(
+    readings: &'a [Reading],
+    normal: &'a Direction,
+    offset: f64,
+) -> impl Iterator<Item = (f64, f64)> + 'a {
+    readings.iter().map(move |r| height(normal, offset, r)).filter(|(h, width)| h.abs() < *width)
 }
 
 /// Outline of the largest piece of the readings in a plane.

@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::cloud::PointCloud;
 use crate::fit::{
-    Effort, Family, Fit, FitError, FitOptions, View, fit, free_points, free_points_of,
-    outline_points,
+    Effort, Family, Fit, FitError, FitOptions, View, fit, free_points_of, outline_points,
 };
 use crate::shape::{Implicit, Plane};
 use crate::surface::Surface;
@@ -18,8 +17,8 @@ const STANDING: f64 = 0.015;
 const SOME: usize = 200;
 /// Points by which a rough fit is made.
 const FEW: usize = 1000;
-/// Readings on each side of the picture by which the space about it is known.
-const READINGS: usize = 100;
+/// Readings on each side of the picture by which the space about it is known, for rough fits and for others.
+const READINGS: [usize; 2] = [100, 200];
 /// Points of an object that make its picture whole.
 const SOLID: usize = 4000;
 /// Farther from a surface than this, in metres, is off it.
@@ -55,9 +54,10 @@ impl Around<'_> {
     pub(crate) fn fit(&self, object: &[u32], options: &FitOptions) -> Result<Fit, FitError> {
         match options.effort {
             Effort::Rough => self.seen(object).fit(options),
-            _ => self
-                .view(object, self.cloud.viewpoint, free_points(self.cloud, object))
-                .fit(options),
+            _ => {
+                let free = free_points_of(self.cloud, object, READINGS[1]);
+                self.view(object, self.cloud.viewpoint, free).fit(options)
+            }
         }
     }
 
@@ -73,7 +73,7 @@ impl Around<'_> {
 
     /// Points made ready for rough fits.
     pub(super) fn seen(&self, object: &[u32]) -> Seen {
-        let free = free_points_of(self.cloud, &thinned(object, SOLID), READINGS);
+        let free = free_points_of(self.cloud, &thinned(object, SOLID), READINGS[0]);
         self.view(&thinned(object, FEW), self.cloud.viewpoint, free)
     }
 
