@@ -85,38 +85,44 @@ impl Draws {
             from.position + rotation * p
         };
         room.draws.set((0..2 * cells.len()).map(draw));
-        room.moments.of(h, &room.draws, |i| cells[i / 2].1)
+        room.moments.of(h, &room.draws, |i| cells[i / 2].1 as f32)
     }
 }
 
 /// Draws and their moments.
 #[derive(Default)]
 struct Room {
-    draws: Sample,
+    draws: Sample<f32>,
     moments: Sums,
 }
 
-/// What moments are made of.
+/// What moments are made of: means over many points, for which single precision is enough.
 #[derive(Default)]
 struct Sums {
-    at: Evaluation,
+    at: Evaluation<f32>,
     /// Equivalent least squares' weights times the shares, and these times the distances.
-    weights: Column<f64>,
-    pulls: Vec<f64>,
+    weights: Column<f32>,
+    pulls: Vec<f32>,
     belonging: f64,
 }
 
 impl Sums {
     /// Moments of points with shares, by a Gaussian's weights.
-    fn of(&mut self, h: &Hypothesis, points: &Sample, share: impl Fn(usize) -> f64) -> Moments {
+    fn of(
+        &mut self,
+        h: &Hypothesis,
+        points: &Sample<f32>,
+        share: impl Fn(usize) -> f32,
+    ) -> Moments {
         let family = h.parameters.family;
         self.at.fill(&h.parameters, points);
         h.mixture.weigh(&self.at.distances, points.len(), &mut self.weights);
         self.weights.iter_mut().take(points.len()).enumerate().for_each(|(i, w)| *w *= share(i));
-        self.belonging = self.weights.iter().sum::<f64>() * h.mixture.scale * h.mixture.scale;
+        let weight: f64 = self.weights.iter().map(|w| f64::from(*w)).sum();
+        self.belonging = weight * h.mixture.scale * h.mixture.scale;
         self.pulls.clear();
         self.pulls.extend(self.weights.iter().zip(&self.at.distances).map(|(w, d)| w * d));
-        let mean = |column: &[f64]| {
+        let mean = |column: &[f32]| {
             let mut sum = 0.0;
             dispatch(Dot(&self.pulls, column, &mut sum));
             sum / self.belonging
@@ -137,12 +143,12 @@ impl Sums {
 }
 
 /// Sum of products of two columns.
-struct Dot<'a>(&'a [f64], &'a [f64], &'a mut f64);
+struct Dot<'a>(&'a [f32], &'a [f32], &'a mut f64);
 
 impl Job for Dot<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        *self.2 = dot::<FUSED>(self.0, self.1);
+        *self.2 = dot::<FUSED, f32>(self.0, self.1);
     }
 }
 
@@ -169,7 +175,7 @@ fn pick(index: &[usize], value: impl Fn(usize) -> f64) -> DVector<f64> {
 }
 
 /// The body without its bias and with the noise that suits it; the cost is left as it was.
-pub(super) fn without_bias(h: &Hypothesis, points: &Sample) -> Hypothesis {
+pub(super) fn without_bias(h: &Hypothesis, points: &Sample<f32>) -> Hypothesis {
     let mut best = Hypothesis { parameters: wide_last(&h.parameters), corrected: true, ..*h };
     // by symmetry the place of a body has no bias
     let moves = |k: &usize| h.parameters.family.has(*k) && !(POSITION..TAPER).contains(k);

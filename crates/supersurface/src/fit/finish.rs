@@ -34,55 +34,57 @@ pub(super) const COMPARING: usize = 400;
 
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
 pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> Hypothesis {
-    let work = &mut Workspace::default();
-    let to_the_end = |h: &Hypothesis, work: &mut Workspace| {
-        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
+    // in single precision to where little is left to gain
+    let (single, double) = (&mut Workspace::default(), &mut Workspace::default());
+    let to_the_end = |h: &Hypothesis, single: &mut Workspace<f32>| {
+        refine(h, &cloud.fine_single, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), single)
+    };
+    let settled = |h: &Hypothesis, double: &mut Workspace| {
+        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), double)
     };
     let close = WORSE * cloud.middle.len() as f64;
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
-    let best = match (terms.sight, cloud.effort) {
-        (Sight::OneSide, Effort::Thorough) => pool[0],
+    let volume = match (terms.sight, cloud.effort) {
+        (Sight::AllAround { volume }, _) => volume,
+        (Sight::Partly, _) => {
+            let rivals = pool[..1].iter().chain(near.take(COMPARED - 1));
+            let rivals = rivals.map(|h| to_the_end(h, single)).collect();
+            return settled(&cheapest(rivals).unwrap_or(pool[0]), double);
+        }
         (Sight::OneSide, Effort::Rough) => return pool[0],
-        _ => to_the_end(&pool[0], work),
-    };
-    let volume = match terms.sight {
-        Sight::AllAround { volume } => volume,
-        Sight::Partly => {
-            let others = near.take(COMPARED - 1).map(|h| to_the_end(h, work));
-            return cheapest(others.chain([best]).collect()).unwrap_or(best);
-        }
-        Sight::OneSide if cloud.effort == Effort::Quick => return best,
-        Sight::OneSide => {
+        (Sight::OneSide, Effort::Quick) => return settled(&pool[0], double),
+        (Sight::OneSide, Effort::Thorough) => {
             let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));
-            let mut rough = Workspace::default();
-            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, &mut rough)).collect();
+            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, single)).collect();
             let best = cheapest(rivals).unwrap_or(pool[0]);
-            return along_rays(&best, &cloud.fine, terms, work);
+            let best = along_rays(&best, &cloud.fine_single, terms, single);
+            return along_rays(&best, &cloud.fine, terms, double);
         }
     };
-    let exactly = |h: &Hypothesis, work: &mut Workspace| {
+    let best = to_the_end(&pool[0], single);
+    let exactly = |h: &Hypothesis, double: &mut Workspace| {
         let last = Schedule { tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
-        refine(h, &cloud.fine, terms, &last, work)
+        refine(h, &cloud.fine, terms, &last, double)
     };
-    let best = exactly(&best, work);
+    let best = exactly(&best, double);
     let noise = best.mixture.scale;
     if noise < BIASED {
         return best;
     }
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
     let corrected = |h: &Hypothesis| {
-        let unbiased = without_bias(h, &cloud.fine);
+        let unbiased = without_bias(h, &cloud.fine_single);
         let cost = smeared_cost(&unbiased.parameters, &h.mixture, &some, noise, volume);
         Hypothesis { cost, ..unbiased }
     };
     let unbiased = corrected(&best);
     let roughly = near.take(if noise < BLURRED { 0 } else { COMPARED - 1 }).map(|h| {
         let rough = Schedule { tolerance: ROUGH, ..schedule(ROUGHLY, RAYS, h.mixture.scale) };
-        let fitted = refine(h, &cloud.fine, terms, &rough, work);
+        let fitted = refine(h, &cloud.fine_single, terms, &rough, single);
         (fitted, corrected(&fitted).cost)
     });
     match roughly.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((fitted, cost)) if cost < unbiased.cost => corrected(&exactly(&fitted, work)),
+        Some((fitted, cost)) if cost < unbiased.cost => corrected(&exactly(&fitted, double)),
         _ => unbiased,
     }
 }

@@ -36,6 +36,8 @@ pub(super) struct Normalised {
     pub(super) sketch: Sample<f32>,
     pub(super) coarse: Sample<f32>,
     pub(super) middle: Sample<f32>,
+    /// All points, for what needs no more than single precision, and for the last rounds.
+    pub(super) fine_single: Sample<f32>,
     pub(super) fine: Sample,
     pub(super) points: Vec<Vector>,
     /// Which view has seen each of the points.
@@ -114,6 +116,7 @@ impl Normalised {
             sketch: all.sample(&places, SKETCH),
             coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
             middle: all.sample(&places, MIDDLE[effort as usize]),
+            fine_single: fine.sample(&places, total),
             fine: fine.sample(&places, total),
             frames: frames(&start, &terms, LOOKED_AT[effort as usize]),
             points,

@@ -11,11 +11,11 @@ use super::noise::Mixture;
 use super::parameters::Parameters;
 use super::samples::sample;
 use crate::Vector;
-use crate::numeric::lanes::{Job, WIDTH, dispatch, exp};
+use crate::numeric::lanes::{Job, Lane, WIDTH, dispatch};
 use crate::numeric::random::Stream;
 
 /// Exponent from which a Gaussian's value may be left out: `e^-16` of its peak.
-const NEGLIGIBLE: f64 = 16.0;
+const NEGLIGIBLE: f32 = 16.0;
 /// Least and most samples of a surface.
 const SAMPLES: [f64; 2] = [600.0, 3000.0];
 
@@ -39,8 +39,8 @@ pub(super) fn smeared_cost(
     let (mut cost, mut slope) = (0.0, 0.0);
     let precision = 0.5 / (sigma * sigma);
     for p in points {
-        let mut sums = [0.0; 2];
-        dispatch(Smear { surface: &surface, p, precision, sums: &mut sums });
+        let (mut sums, p) = ([0.0; 2], [p.x as f32, p.y as f32, p.z as f32]);
+        dispatch(Smear { surface: &surface, p, precision: precision as f32, sums: &mut sums });
         let density = peak * sums[0] + uniform;
         cost -= density.ln();
         // by ln σ: the kernel's mean square distance over σ², less its dimensions
@@ -51,11 +51,11 @@ pub(super) fn smeared_cost(
     cost - slope * slope / (4.0 * inliers.max(1.0))
 }
 
-/// Samples of a surface, eight neighbours in a block with a ball around them.
+/// Samples of a surface, eight neighbours in a block with a ball around them, in single precision.
 struct Blocks {
-    samples: Vec<[[f64; WIDTH]; 3]>,
+    samples: Vec<[[f32; WIDTH]; 3]>,
     /// Coordinates of the balls' middles and their radii, padded with balls of nothing that are far.
-    balls: [Vec<f64>; 4],
+    balls: [Vec<f32>; 4],
 }
 
 impl Blocks {
@@ -66,12 +66,12 @@ impl Blocks {
             let middle = block.iter().sum::<Vector>() / WIDTH as f64;
             let radius = block.iter().map(|p| (p - middle).norm_squared()).fold(0.0, f64::max);
             let ball = [middle.x, middle.y, middle.z, radius.sqrt()];
-            balls.iter_mut().zip(ball).for_each(|(column, value)| column.push(value));
+            balls.iter_mut().zip(ball).for_each(|(column, value)| column.push(value as f32));
         }
         for (column, far) in balls.iter_mut().zip([1e6, 1e6, 1e6, 0.0]) {
             column.resize(blocks.len().next_multiple_of(WIDTH), far);
         }
-        let columns = |block: &[Vector; WIDTH]| [0, 1, 2].map(|k| block.map(|p| p[k]));
+        let columns = |block: &[Vector; WIDTH]| [0, 1, 2].map(|k| block.map(|p| p[k] as f32));
         Self { samples: blocks.iter().map(columns).collect(), balls }
     }
 
@@ -83,21 +83,21 @@ impl Blocks {
 /// `Σ exp(-d²/2σ²)` and `Σ d² exp(-d²/2σ²)` over the samples that are not too far.
 struct Smear<'a> {
     surface: &'a Blocks,
-    p: &'a Vector,
-    precision: f64,
+    p: [f32; 3],
+    precision: f32,
     sums: &'a mut [f64; 2],
 }
 
 impl Job for Smear<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let reach = (NEGLIGIBLE / self.precision).sqrt();
+        let ([px, py, pz], reach) = (self.p, (NEGLIGIBLE / self.precision).sqrt());
         let [x, y, z, radius] = self.surface.balls.each_ref().map(|c| c.as_chunks::<WIDTH>().0);
-        let mut lanes = [[0.0; WIDTH]; 2];
+        let mut lanes = [[0.0f32; WIDTH]; 2];
         for (b, samples) in self.surface.samples.chunks(WIDTH).enumerate() {
             let mut beyond = [0.0; WIDTH];
             for i in 0..WIDTH {
-                let (dx, dy, dz) = (x[b][i] - self.p.x, y[b][i] - self.p.y, z[b][i] - self.p.z);
+                let (dx, dy, dz) = (x[b][i] - px, y[b][i] - py, z[b][i] - pz);
                 let within = reach + radius[b][i];
                 beyond[i] = dx * dx + dy * dy + dz * dz - within * within;
             }
@@ -107,14 +107,14 @@ impl Job for Smear<'_> {
                 }
                 let [x, y, z] = samples;
                 for i in 0..WIDTH {
-                    let (dx, dy, dz) = (x[i] - self.p.x, y[i] - self.p.y, z[i] - self.p.z);
+                    let (dx, dy, dz) = (x[i] - px, y[i] - py, z[i] - pz);
                     let square = dx * dx + dy * dy + dz * dz;
-                    let kernel = exp::<FUSED>(-self.precision * square);
+                    let kernel = Lane::exp::<FUSED>(-self.precision * square);
                     lanes[0][i] += kernel;
                     lanes[1][i] += kernel * square;
                 }
             }
         }
-        *self.sums = lanes.map(|l| l.iter().sum());
+        *self.sums = lanes.map(|l| l.iter().map(|x| f64::from(*x)).sum());
     }
 }

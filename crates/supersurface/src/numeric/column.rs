@@ -40,7 +40,7 @@ impl<T: Copy> Column<T> {
     /// Cuts the row, or appends `value` up to a length.
     pub fn resize(&mut self, count: usize, value: T) {
         if self.start + count > self.room.len() {
-            let mut room = vec![value; 2 * count + LINE];
+            let mut room = vec![value; count.max(2 * self.count) + LINE];
             let start = room.as_ptr().align_offset(LINE).min(LINE);
             room[start..start + self.count].copy_from_slice(self);
             (self.room, self.start) = (room, start);

@@ -440,16 +440,16 @@ pub fn arc_tangent_ratio<const FUSED: bool, L: Lane>(square: L) -> L {
     L::of(4.0) * first * second * polynomial::<FUSED, L, 16>(q, series)
 }
 
-/// Sum of products of two slices of the same length, a multiple of [`WIDTH`]; the rest is left out.
+/// Sum of products of two slices of the same length, a multiple of [`Lane::WIDTH`]; the rest is left out.
 #[inline(always)]
-pub fn dot<const FUSED: bool>(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; WIDTH];
-    for (x, y) in a.as_chunks::<WIDTH>().0.iter().zip(b.as_chunks::<WIDTH>().0) {
-        for i in 0..WIDTH {
-            sums[i] = fused::<FUSED>(x[i], y[i], sums[i]);
+pub fn dot<const FUSED: bool, L: Lane>(a: &[L], b: &[L]) -> f64 {
+    let mut sums = [L::of(0.0); 2 * WIDTH];
+    for (x, y) in a.chunks_exact(L::WIDTH).zip(b.chunks_exact(L::WIDTH)) {
+        for i in 0..L::WIDTH {
+            sums[i] = x[i].times_plus::<FUSED>(y[i], sums[i]);
         }
     }
-    sums.iter().sum()
+    sums[..L::WIDTH].iter().map(|s| s.wide()).sum()
 }
 
 #[cfg(test)]

@@ -113,9 +113,9 @@ impl Job for Add<'_> {
             column.iter_mut().zip(&block.areas).for_each(|(v, area)| *v *= area);
         }
         for (r, (arm, own)) in weighted.iter().zip(&slopes.vectors).enumerate() {
-            sums.force[r] += dot::<FUSED>(&block.areas, own);
+            sums.force[r] += dot::<FUSED, f64>(&block.areas, own);
             for (c, vector) in slopes.vectors.iter().enumerate() {
-                sums.arms[(r, c)] += dot::<FUSED>(arm, vector);
+                sums.arms[(r, c)] += dot::<FUSED, f64>(arm, vector);
             }
         }
         // the columns of (J; [r]× J)
@@ -135,9 +135,9 @@ impl Job for Add<'_> {
         for c in 0..3 {
             let (next, last) = ((c + 1) % 3, (c + 2) % 3);
             for (r, own) in tall[c].iter().enumerate() {
-                sums.spring[(r, c)] += dot::<FUSED>(&block.areas, own);
-                sums.spring[(r, c + 3)] += dot::<FUSED>(&weighted[next], &tall[last][r])
-                    - dot::<FUSED>(&weighted[last], &tall[next][r]);
+                sums.spring[(r, c)] += dot::<FUSED, f64>(&block.areas, own);
+                sums.spring[(r, c + 3)] += dot::<FUSED, f64>(&weighted[next], &tall[last][r])
+                    - dot::<FUSED, f64>(&weighted[last], &tall[next][r]);
             }
         }
         for (seam, area) in slopes.without_curvature.iter().zip(&block.areas) {
