@@ -56,9 +56,10 @@ impl<L: Lane> Rays<L> {
         ends: impl Iterator<Item = &'a Vector>,
         found: &mut Vec<Vector>,
     ) {
+        let around = Around::new(s, from);
         self.lines.clear();
         self.lines.extend(ends.filter_map(|end| {
-            let (low, high) = near(s, from, end)?;
+            let (low, high) = around.near(end)?;
             Some(Line { way: end - from, low, high, deepest: low, depth: f64::INFINITY })
         }));
         if self.lines.is_empty() {
@@ -86,13 +87,15 @@ impl<L: Lane> Rays<L> {
 
     /// Narrows each line to the neighbourhood of its deepest sample.
     fn choose_valleys(&mut self, s: &Parameters, from: &Vector) {
-        for k in 0..=SAMPLES {
-            let share = k as f64 / SAMPLES as f64;
-            let at = |l: &Line| l.low + (l.high - l.low) * share;
-            self.places.set(self.lines.iter().map(|l| from + l.way * at(l)));
-            self.evaluation.fill_distances(s, &self.places);
-            for (line, depth) in self.lines.iter_mut().zip(&self.evaluation.distances) {
-                line.take(at(line), depth.wide());
+        let at = |l: &Line, k: usize| l.low + (l.high - l.low) * (k as f64 / SAMPLES as f64);
+        let samples = |l| (0..=SAMPLES).map(move |k| (l, k));
+        let samples = self.lines.iter().flat_map(samples);
+        self.places.set(samples.map(|(l, k)| from + l.way * at(l, k)));
+        self.evaluation.fill_distances(s, &self.places);
+        let depths = self.evaluation.distances.chunks_exact(SAMPLES + 1);
+        for (line, depths) in self.lines.iter_mut().zip(depths) {
+            for (k, depth) in depths.iter().enumerate() {
+                line.take(at(line, k), depth.wide());
             }
         }
         for line in &mut self.lines {
@@ -103,23 +106,42 @@ impl<L: Lane> Rays<L> {
     }
 }
 
-/// The stretch between `from` and `to`, as shares, that runs through the body's bounding ellipsoid.
-fn near(s: &Parameters, from: &Vector, to: &Vector) -> Option<(f64, f64)> {
-    let half = Vector::from(s.half_extents());
-    let local = |x: &Vector| s.rotation.inverse_transform_vector(&(x - s.position));
-    let a = local(from).component_div(&half);
-    let b = local(to).component_div(&half) - a;
-    let squared = b.norm_squared();
-    if squared == 0.0 {
-        return None;
+/// Where a body's bounding ellipsoid is a ball about the origin.
+struct Around<'a> {
+    s: &'a Parameters,
+    half: Vector,
+    /// A place there.
+    from: Vector,
+}
+
+impl<'a> Around<'a> {
+    fn new(s: &'a Parameters, from: &Vector) -> Self {
+        let mut around = Self { s, half: Vector::from(s.half_extents()), from: *from };
+        around.from = around.inward(from);
+        around
     }
-    // a body of exponents >= 0.1 lies within √3 of its scaled centre
-    let middle = -a.dot(&b) / squared;
-    let nearest = (a + b * middle).norm_squared();
-    if nearest >= 3.0 {
-        return None;
+
+    fn inward(&self, x: &Vector) -> Vector {
+        let local = self.s.rotation.inverse_transform_vector(&(x - self.s.position));
+        local.component_div(&self.half)
     }
-    let reach = ((3.0 - nearest) / squared).sqrt();
-    let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
-    (low < high).then_some((low, high))
+
+    /// The stretch between the place and another, as shares, that runs through the ellipsoid.
+    fn near(&self, to: &Vector) -> Option<(f64, f64)> {
+        let a = self.from;
+        let b = self.inward(to) - a;
+        let squared = b.norm_squared();
+        if squared == 0.0 {
+            return None;
+        }
+        // a body of exponents >= 0.1 lies within √3 of its scaled centre
+        let middle = -a.dot(&b) / squared;
+        let nearest = (a + b * middle).norm_squared();
+        if nearest >= 3.0 {
+            return None;
+        }
+        let reach = ((3.0 - nearest) / squared).sqrt();
+        let (low, high) = ((middle - reach).max(0.0), (middle + reach).min(1.0));
+        (low < high).then_some((low, high))
+    }
 }

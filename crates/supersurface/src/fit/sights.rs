@@ -43,7 +43,7 @@ impl<L: Lane> Sights<L> {
         self.secants.resize(self.ways.len(), L::of(0.0));
         for _ in 0..STEPS {
             self.sample.set_along(points, &self.ways);
-            self.there.fill(s, &self.sample);
+            self.there.fill_normals(s, &self.sample);
             dispatch(Secants { at: &self.there, points, out: &mut self.secants });
             let steps = self.there.distances.iter().zip(&self.secants).map(|(d, c)| *d * *c);
             for (way, step) in self.ways.iter_mut().zip(steps) {
