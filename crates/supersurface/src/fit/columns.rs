@@ -310,9 +310,9 @@ pub(super) mod tests {
         fn check<L: Lane>(s: &Parameters, places: &[Vector]) {
             let mut all = Evaluation::<L>::default();
             all.fill(s, &Sample::new(places.iter().copied()));
-            for i in 0..places.len() {
+            for (i, place) in places.iter().enumerate() {
                 let sound = all.row(s, i).iter().all(|v| v.is_finite());
-                assert!(sound && all.distances[i].wide().is_finite(), "{s:?} at {}", places[i]);
+                assert!(sound && all.distances[i].wide().is_finite(), "{s:?} at {place}");
             }
         }
         let mut random = Stream::new(7, 0);

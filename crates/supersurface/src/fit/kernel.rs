@@ -262,7 +262,7 @@ pub(super) fn evaluate<const FUSED: bool, const PARTS: u8, const WHAT: u8, L: La
                 through_taper::<FUSED, L>(untapered, &body.taper, body.height, &turned, &u, &pair);
             out.rows[TAPER][i] = by[0];
             out.rows[TAPER + 1][i] = by[1];
-            by_height = by_height + by_a3;
+            by_height += by_a3;
             pair = before;
         }
         if let Some(stage) = &untwisted {
@@ -275,7 +275,7 @@ pub(super) fn evaluate<const FUSED: bool, const PARTS: u8, const WHAT: u8, L: La
                 &pair,
             );
             out.rows[TWIST][i] = by;
-            by_height = by_height + by_a3;
+            by_height += by_a3;
             pair = before;
         }
         if let Some(straight) = &straight {

@@ -197,7 +197,8 @@ fn total<L: Lane>(lanes: &[L; WIDEST]) -> f64 {
     let mut half = L::WIDTH / 2;
     while half > 0 {
         for i in 0..half {
-            sums[i] = sums[i] + sums[i + half];
+            let other = sums[i + half];
+            sums[i] += other;
         }
         half /= 2;
     }

@@ -258,7 +258,7 @@ impl Lane for f32 {
     fn sin_cos<const FUSED: bool>(self) -> (Self, Self) {
         const ROUND: f32 = 12_582_912.0;
         const HALF_PI_HIGH: f32 = 1.570_312_5;
-        const HALF_PI_LOW: f32 = 4.838_267_9e-4;
+        const HALF_PI_LOW: f32 = 4.838_268e-4;
         let shifted = self.times_plus::<FUSED>(std::f32::consts::FRAC_2_PI, ROUND);
         let k = shifted - ROUND;
         let r = k.times_plus::<FUSED>(-HALF_PI_LOW, k.times_plus::<FUSED>(-HALF_PI_HIGH, self));
