@@ -5,6 +5,16 @@ use super::kernel::WIDEST;
 use super::parameters::{COUNT, Family, Parameters, Row};
 use crate::numeric::lanes::{Job, Lane, dispatch, fused};
 
+/// Parameters that may move at once, at most: those of a tapered and bent body.
+const FREE: usize = 15;
+/// Columns by which a pair of rows is multiplied at once: two values then serve eight products.
+const TILE: usize = 4;
+/// Sums of a row: its products with the distances and with the columns up to its own, in whole tiles.
+const ROW: usize = (FREE + 1).next_multiple_of(TILE);
+
+/// The sums of a row, lane by lane.
+pub(super) type Sums<L> = [[L; WIDEST]; ROW];
+
 /// The normal equations that a set of weighted rows adds up to: `½ Σ w r²` and its derivatives.
 #[derive(Clone, Debug)]
 pub(super) struct Normal {
@@ -60,8 +70,6 @@ impl Sum for f64 {
     }
 }
 
-/// Parameters that may move at once, at most: those of a tapered and bent body.
-const FREE: usize = 15;
 impl Normal {
     pub(super) const fn zero() -> Self {
         Self { matrix: [[0.0; COUNT]; COUNT], gradient: [0.0; COUNT], cost: 0.0 }
@@ -121,14 +129,6 @@ impl Normal {
         regular.then_some(step)
     }
 }
-
-/// Columns by which a pair of rows is multiplied at once: two values then serve eight products.
-const TILE: usize = 4;
-/// Sums of a row: its products with the distances and with the columns up to its own, in whole tiles.
-const ROW: usize = (FREE + 1).next_multiple_of(TILE);
-
-/// The sums of a row, lane by lane.
-pub(super) type Sums<L> = [[L; WIDEST]; ROW];
 
 /// Sums of products over points, lane by lane: those of each column with the distances and with the columns up to its own.
 struct Accumulate<'a, L> {
@@ -238,5 +238,80 @@ impl Job for Solve<'_> {
             }
         }
         *self.regular = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::Vector;
+    use crate::fit::columns::Sample;
+    use crate::fit::columns::tests::some_body;
+    use crate::numeric::random::Stream;
+
+    fn check_sums<L: Lane>(s: &Parameters, points: &[Vector], error: f64) {
+        let mut at = Evaluation::<L>::default();
+        at.fill(s, &Sample::new(points.iter().copied()));
+        let weights: Vec<L> = (0..at.distances.len())
+            .map(|i| L::of(if i < points.len() { 0.5 + (i % 7) as f64 } else { 0.0 }))
+            .collect();
+        let found = Normal::of_points(s.family, &at, &weights, &mut Vec::new());
+        let mut known = Normal::zero();
+        for (i, weight) in weights.iter().enumerate().take(points.len()) {
+            known.add(at.distances[i].wide(), weight.wide(), &at.row(s, i));
+        }
+        let scale = (0..COUNT).map(|i| known.matrix[i][i]).fold(1.0, f64::max);
+        for i in 0..COUNT {
+            assert!((found.gradient[i] - known.gradient[i]).abs() < error * scale);
+            for j in 0..=i {
+                let (found, known) = (found.matrix[i][j], known.matrix[i][j]);
+                assert!((found - known).abs() < error * scale, "{i} {j}: {found} {known}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_are_those_of_single_points() {
+        let mut random = Stream::new(21, 0);
+        for case in 0..60 {
+            let s = some_body(Family::ALL[case % 6], &mut random);
+            let points: Vec<Vector> = (0..1 + 7 * case)
+                .map(|_| s.position + Vector::from_fn(|_, _| random.between(-1.0, 1.0)))
+                .collect();
+            check_sums::<f64>(&s, &points, 1e-12);
+            check_sums::<f32>(&s, &points, 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_step_solves_the_equations() {
+        let mut random = Stream::new(22, 0);
+        for case in 0..120 {
+            let s = some_body(Family::ALL[case % 6], &mut random);
+            let mut normal = Normal::zero();
+            for _ in 0..40 {
+                let row =
+                    std::array::from_fn(|k| if s.family.has(k) { random.normal() } else { 0.0 });
+                normal.add(random.normal(), random.uniform(), &row);
+            }
+            let step = normal.step(&s, 0.01).unwrap();
+            let free: Vec<usize> = (0..COUNT)
+                .filter(|i| s.family.has(*i) && !s.is_held(*i, normal.gradient[*i]))
+                .collect();
+            let matrix = DMatrix::from_fn(free.len(), free.len(), |j, k| {
+                let (i, other) = (free[j].max(free[k]), free[j].min(free[k]));
+                let entry = normal.matrix[i][other];
+                if j == k { 1.01 * entry + 1e-3 } else { entry }
+            });
+            let right = DVector::from_fn(free.len(), |j, _| -normal.gradient[free[j]]);
+            let known = matrix.cholesky().unwrap().solve(&right);
+            for (j, i) in free.iter().enumerate() {
+                assert!((step[*i] - known[j]).abs() < 1e-9 * known.amax().max(1.0), "{case}");
+            }
+            normal.matrix[0][0] = -1.0;
+            assert!(normal.step(&s, 0.01).is_none());
+        }
     }
 }

@@ -272,7 +272,7 @@ fn add_intrusions<L: Lane, S: Sum>(
     }
 }
 
-/// Least height of the body over the plane `normal · x + offset = 0` and its derivatives.
+/// Least height of the body over the plane `normal · x + offset = 0` and, where rows are looked at, its derivatives.
 ///
 /// The support function of a superellipsoid is the two-layered norm with the dual exponents `q = 2/(2 - ε)`,
 /// `h = ‖(ρ, a3 m3)‖` with `ρ = ‖(a1 m1, a2 m2)‖` (FORMULAS §2), and that of a toroid is `h + a4 ρ`. As for the
