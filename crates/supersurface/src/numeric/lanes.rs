@@ -103,7 +103,7 @@ pub trait Lane:
         let s = (m - Self::of(1.0)) / (m + Self::of(1.0));
         k.times_plus::<FUSED>(Self::of(std::f64::consts::LN_2), s.log_series::<FUSED>())
     }
-    /// Sine and cosine as [`sin_cos`]; `f32`: within 3e-7 for arguments up to 100.
+    /// Sine and cosine as [`sin_cos`]; `f32`: within 2e-6 for arguments up to 70.
     fn sin_cos<const FUSED: bool>(self) -> (Self, Self);
     /// `1/√x` of a positive normal number, within a few units of the last place: without a division, for which kernels
     /// wait longest.
@@ -424,7 +424,7 @@ pub fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
     if half { (-sin, -cos) } else { (sin, cos) }
 }
 
-/// `atan(m)/m` of `m = √square`, within 4e-14 of `1/m` (`f32`: 3e-7): the angle halved twice, then the series.
+/// `atan(m)/m` of `m = √square`, within 4e-14 of `1/m` (`f32`: 2e-6): the angle halved twice, then the series.
 #[inline(always)]
 pub fn arc_tangent_ratio<const FUSED: bool, L: Lane>(square: L) -> L {
     let one = L::of(1.0);
