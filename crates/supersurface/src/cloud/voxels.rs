@@ -246,6 +246,17 @@ mod tests {
     }
 
     #[test]
+    fn the_order_of_the_indices_does_not_matter() {
+        let mut random = Stream::new(6, 0);
+        let points: Vec<Point> =
+            (0..300).map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1)))).collect();
+        let sorted = VoxelGrid::new(&points, 0..300, 0.05).unwrap();
+        let mixed = VoxelGrid::new(&points, (0..300).map(|i| i * 7 % 300), 0.05).unwrap();
+        assert_eq!((&sorted.cubes, &sorted.starts), (&mixed.cubes, &mixed.starts));
+        assert_eq!(sorted.entries, mixed.entries);
+    }
+
+    #[test]
     fn components_are_those_of_all_pairs_of_cubes() {
         let mut random = Stream::new(5, 0);
         let points: Vec<Point> =

@@ -9,7 +9,7 @@ use crate::numeric::column::Column;
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Points as columns, padded with far points to a multiple of [`Lane::WIDTH`].
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Sample<L = f64> {
     columns: [Column<L>; 3],
     count: usize,
@@ -19,13 +19,6 @@ pub(super) struct Sample<L = f64> {
 
 /// Where padding stands: far from any body in normalised coordinates.
 const PADDING: f64 = 50.0;
-
-impl<L: Lane> Default for Sample<L> {
-    fn default() -> Self {
-        let none = || [(); 3].map(|()| Column::default());
-        Self { columns: none(), count: 0, rays: none() }
-    }
-}
 
 impl<L: Lane> Sample<L> {
     pub(super) fn new(points: impl Iterator<Item = Vector>) -> Self {
@@ -116,16 +109,10 @@ fn into_columns<L: Lane>(vectors: impl Iterator<Item = Vector>, padded: usize) -
 
 /// First-order distances and their derivatives, a column a parameter; padded like the sample. Columns of parameters
 /// that the family lacks hold nothing of use.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Evaluation<L = f64> {
     pub(super) distances: Column<L>,
     pub(super) rows: [Column<L>; COUNT],
-}
-
-impl<L> Default for Evaluation<L> {
-    fn default() -> Self {
-        Self { distances: Column::default(), rows: [(); COUNT].map(|()| Column::default()) }
-    }
 }
 
 impl<L: Lane> Evaluation<L> {

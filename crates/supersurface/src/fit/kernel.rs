@@ -27,10 +27,7 @@ use super::parameters::{
 use super::pull_back::{
     Pair, Triple, dot, through_bend, through_taper, through_twist, unbend, untaper, untwist,
 };
-use crate::numeric::lanes::{Lane, inverses, log_and_inverse, logarithms};
-
-/// Numbers in the widest block.
-pub(super) const WIDEST: usize = 16;
+use crate::numeric::lanes::{Lane, WIDEST, inverses, log_and_inverse, logarithms};
 
 /// One block of results, of which the first [`Lane::WIDTH`] are used.
 pub(super) struct Block<L> {
@@ -47,7 +44,7 @@ impl<L: Lane> Block<L> {
 
 /// What stands in for a distance that is not a number: far away.
 const FAR: f64 = 10.0;
-/// Larger distances and slopes are none.
+/// Larger distances are none.
 const LARGEST: f64 = 1e18;
 
 /// Flags of a family for compilation: which parts of the loop it needs.

@@ -5,9 +5,8 @@
 //! should explain. On single views, whose noise acts along the rays and grows at edges, it is a Student-t
 //! with 3 degrees of freedom.
 
-use super::kernel::WIDEST;
 use crate::numeric::column::Column;
-use crate::numeric::lanes::{Job, Lane, dispatch};
+use crate::numeric::lanes::{Job, Lane, WIDEST, dispatch};
 
 /// The law of the inliers' distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

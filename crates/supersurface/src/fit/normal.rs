@@ -1,9 +1,8 @@
 //! Normal equations of weighted residuals: what they add up to, and the damped step that they ask for.
 
 use super::columns::Evaluation;
-use super::kernel::WIDEST;
 use super::parameters::{COUNT, Family, Parameters, Row};
-use crate::numeric::lanes::{Job, Lane, dispatch, fused};
+use crate::numeric::lanes::{Job, Lane, WIDEST, dispatch, fused};
 
 /// Parameters that may move at once, at most: those of a tapered and bent body.
 const FREE: usize = 15;

@@ -32,18 +32,11 @@ impl Line {
 }
 
 /// Buffers of the search.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Rays<L> {
     lines: Vec<Line>,
     places: Sample<L>,
     evaluation: Evaluation<L>,
-}
-
-impl<L: Lane> Default for Rays<L> {
-    fn default() -> Self {
-        let (places, evaluation) = (Sample::default(), Evaluation::default());
-        Self { lines: Vec::new(), places, evaluation }
-    }
 }
 
 impl<L: Lane> Rays<L> {

@@ -18,19 +18,12 @@ const GRAZING: f64 = 0.15;
 const LONGEST: f64 = 0.3;
 
 /// Buffers of the way along the rays.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Sights<L> {
     ways: Column<L>,
     secants: Column<L>,
     sample: Sample<L>,
     there: Evaluation<L>,
-}
-
-impl<L: Lane> Default for Sights<L> {
-    fn default() -> Self {
-        let (sample, there) = (Sample::default(), Evaluation::default());
-        Self { ways: Column::default(), secants: Column::default(), sample, there }
-    }
 }
 
 impl<L: Lane> Sights<L> {

@@ -84,7 +84,7 @@ const LEASHED: f64 = 0.01;
 const LOOKS: usize = 2;
 
 /// Buffers that are used again from one hypothesis to the next.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Workspace<L = f64> {
     now: Box<Evaluation<L>>,
     trial: Box<Evaluation<L>>,
@@ -95,22 +95,6 @@ pub(super) struct Workspace<L = f64> {
     intruding: Evaluation<L>,
     search: Rays<L>,
     sights: Sights<L>,
-}
-
-impl<L: Lane> Default for Workspace<L> {
-    fn default() -> Self {
-        Self {
-            now: Box::default(),
-            trial: Box::default(),
-            weights: Column::default(),
-            sums: Vec::new(),
-            intruders: Vec::new(),
-            intrusions: Sample::default(),
-            intruding: Evaluation::default(),
-            search: Rays::default(),
-            sights: Sights::default(),
-        }
-    }
 }
 
 impl<L: Lane> Workspace<L> {

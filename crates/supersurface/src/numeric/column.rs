@@ -6,18 +6,12 @@ use std::ops::{Deref, DerefMut};
 const LINE: usize = 64;
 
 /// A growing row of numbers that begins with a cache line.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Column<T> {
     /// The numbers from `start` on, which depends on where the memory lies.
     room: Vec<T>,
     start: usize,
     count: usize,
-}
-
-impl<T> Default for Column<T> {
-    fn default() -> Self {
-        Self { room: Vec::new(), start: 0, count: 0 }
-    }
 }
 
 impl<T: Copy> Column<T> {
@@ -51,7 +45,7 @@ impl<T: Copy> Column<T> {
     }
 }
 
-impl<T: Copy> FromIterator<T> for Column<T> {
+impl<T: Copy + Default> FromIterator<T> for Column<T> {
     fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
         let mut column = Self::default();
         values.into_iter().for_each(|v| column.push(v));

@@ -7,6 +7,8 @@
 
 /// Numbers in a block: two AVX2 registers, so that latencies overlap.
 pub const WIDTH: usize = 8;
+/// Numbers in the widest block, of the narrowest numbers.
+pub const WIDEST: usize = 2 * WIDTH;
 
 /// Work that is worth compiling for wider registers. `run` must be `#[inline(always)]`.
 pub trait Job {
@@ -72,6 +74,7 @@ fn polynomial<const FUSED: bool, L: Lane, const N: usize>(x: L, c: [f64; N]) -> 
 /// last digits.
 pub trait Lane:
     Copy
+    + Default
     + PartialOrd
     + std::ops::Add<Output = Self>
     + std::ops::Sub<Output = Self>
@@ -205,7 +208,7 @@ impl Lane for f64 {
 impl Lane for f32 {
     const TINY: Self = 1e-30;
     const LOST: Self = 20.0;
-    const WIDTH: usize = 2 * WIDTH;
+    const WIDTH: usize = WIDEST;
     #[inline(always)]
     fn of(value: f64) -> Self {
         value as f32
@@ -443,7 +446,7 @@ pub fn arc_tangent_ratio<const FUSED: bool, L: Lane>(square: L) -> L {
 /// Sum of products of two slices of the same length, a multiple of [`Lane::WIDTH`]; the rest is left out.
 #[inline(always)]
 pub fn dot<const FUSED: bool, L: Lane>(a: &[L], b: &[L]) -> f64 {
-    let mut sums = [L::of(0.0); 2 * WIDTH];
+    let mut sums = [L::of(0.0); WIDEST];
     for (x, y) in a.chunks_exact(L::WIDTH).zip(b.chunks_exact(L::WIDTH)) {
         for i in 0..L::WIDTH {
             sums[i] = x[i].times_plus::<FUSED>(y[i], sums[i]);
