@@ -17,10 +17,10 @@ const RAYS: usize = 48;
 /// Most rounds on all points.
 const ROUNDS: usize = 15;
 /// The last rounds gain less than this many nats, so that the way there does not matter.
-const END: f64 = 1e-6;
+const END: f64 = 3e-7;
 /// Rounds of the others that are compared, and the nats below which a gain ends them.
 const ROUGHLY: usize = 6;
-const ROUGH: f64 = 0.5;
+const ROUGH: f64 = 0.15;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
 const BIASED: f64 = 0.018;
 pub(super) const BLURRED: f64 = 0.02;

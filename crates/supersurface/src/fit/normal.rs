@@ -102,6 +102,11 @@ impl Normal {
         normal
     }
 
+    /// By how much a step lowers the cost, if this is as curved as the equations say: `-½ bᵀ s`.
+    pub(super) fn promise(&self, step: &Row) -> f64 {
+        -0.5 * self.gradient.iter().zip(step).map(|(b, s)| b * s).sum::<f64>()
+    }
+
     /// The damped step `-(H + λ diag H)⁻¹ b` over the parameters that may move; `None` when the matrix is not
     /// positive definite.
     pub(super) fn step(&self, s: &Parameters, damping: f64) -> Option<Row> {

@@ -25,6 +25,8 @@ const KEPT: [usize; 3] = [1, 4, 4];
 const SKETCHED: usize = 16;
 /// More starts of a single view than this are sorted out on the way.
 const MANY: usize = 36;
+/// Nats a point by which a start that is farther behind the best is left.
+const FAR: f64 = 0.2;
 /// Starts that are kept though half of them are fewer.
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
@@ -135,7 +137,7 @@ fn search(
                 break;
             }
         }
-        keep(&mut ranked, kept);
+        keep(&mut ranked, kept, points.len());
     }
     if family.is_ring() && !sketch {
         // a ring whose section is turned by 45 degrees hardly finds its way
@@ -145,7 +147,7 @@ fn search(
             let schedule = Schedule { leash: LEASH[cloud.effort as usize], ..schedule };
             refine(h, &cloud.coarse, terms, &schedule, work)
         }));
-        keep(&mut ranked, most);
+        keep(&mut ranked, most, cloud.coarse.len());
     }
     for h in &ranked {
         let schedule = schedule(12, MIDDLE_RAYS, 2.0 * h.mixture.scale);
@@ -178,11 +180,13 @@ fn switch(
     }
 }
 
-/// Keeps the best of a list without doubles.
-fn keep(ranked: &mut Vec<Hypothesis>, kept: usize) {
+/// Keeps the best of a list by some points, without doubles and what is far behind.
+fn keep(ranked: &mut Vec<Hypothesis>, kept: usize, points: usize) {
     ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     ranked.dedup_by(|b, a| is_same(a, b));
     ranked.truncate(kept);
+    let least = ranked.first().map_or(0.0, |h| h.cost) + FAR * points as f64;
+    ranked.retain(|h| h.cost < least);
 }
 
 fn turned_by_half(h: &Hypothesis) -> Option<Hypothesis> {
@@ -224,5 +228,5 @@ fn coarse_schedule(h: &Hypothesis, rounds: usize, rays: usize) -> Schedule {
 }
 
 pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
-    Schedule { rounds, rays, scale, leash: f64::INFINITY, along_rays: false, tolerance: 0.02 }
+    Schedule { rounds, rays, scale, leash: f64::INFINITY, along_rays: false, tolerance: 0.005 }
 }

@@ -50,7 +50,7 @@ pub(super) struct Schedule {
     pub(super) rays: usize,
     /// By residuals along the rays in which the points were seen; these must be known.
     pub(super) along_rays: bool,
-    /// A round that gains less than this many nats ends the search.
+    /// A step that promises to gain less than this many nats is not made any more.
     pub(super) tolerance: f64,
 }
 
@@ -140,7 +140,7 @@ impl<L: Lane> Workspace<L> {
     }
 }
 
-/// Improves a hypothesis until a round gains nothing or the schedule ends.
+/// Improves a hypothesis until a step promises nothing or the schedule ends.
 pub(super) fn refine<L: Lane>(
     start: &Hypothesis,
     points: &Sample<L>,
@@ -152,7 +152,7 @@ pub(super) fn refine<L: Lane>(
     let mut mixture = start.mixture;
     let mut annealed = schedule.scale;
     let mut damping = 1e-3;
-    let mut failures = 0;
+    let (mut failures, mut settled) = (0, false);
     let n = points.len();
     let counts = [n, schedule.rays];
     work.evaluate(&s, points, schedule);
@@ -160,43 +160,41 @@ pub(super) fn refine<L: Lane>(
     mixture.density = terms.outlier_density(&s);
     mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
     let (mut rounds, mut stopped) = (start.rounds, Stopped::Rounds);
-    for round in 0..schedule.rounds {
-        rounds += 1;
+    'rounds: for round in 0..schedule.rounds {
         if round % LOOKS == 0 {
             work.look(&s, terms, schedule.rays);
         }
         let mut normal = work.normal(s.family, &mixture, n);
         work.add(terms, &s, counts, mixture.scale, &mut normal);
-        let before = normal.cost;
-        let mut gain = None;
+        let mut gained = false;
         for _ in 0..4 {
             let Some(step) = normal.step(&s, damping) else {
                 damping *= 10.0;
                 continue;
             };
+            if settled && normal.promise(&step) < schedule.tolerance {
+                stopped = Stopped::Converged;
+                break 'rounds;
+            }
             let next = s.stepped(&step);
             work.evaluate(&next, points, schedule);
             let mut after = mixture.cost(&work.trial.distances, n);
             work.add(terms, &next, counts, mixture.scale, &mut after);
-            if after < before - LEAST_GAIN {
-                (s, gain) = (next, Some(before - after));
+            if after < normal.cost - LEAST_GAIN {
+                (s, gained) = (next, true);
                 work.accept();
                 damping = (damping * 0.25).max(1e-7);
                 break;
             }
             damping = (damping * 6.0).max(1e-4);
         }
+        rounds += 1;
         let scale = mixture.scale;
         annealed *= DECAY;
         mixture.density = terms.outlier_density(&s);
         mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
-        failures = if gain.is_some() { 0 } else { failures + 1 };
-        let settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
-        let small = gain.is_some_and(|g| g < schedule.tolerance);
-        if settled && small {
-            stopped = Stopped::Converged;
-            break;
-        }
+        failures = if gained { 0 } else { failures + 1 };
+        settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         if failures >= 2 && annealed < mixture.scale {
             stopped = Stopped::Stuck;
             break;
