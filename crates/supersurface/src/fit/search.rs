@@ -3,7 +3,7 @@
 use super::Effort;
 use super::columns::Sample;
 use super::coverage::{covering_cost, shows_a_part};
-use super::finish::finish;
+use super::finish::{BLURRED, finish};
 use super::misfit::correlation;
 use super::noise::{Law, Mixture};
 use super::parameters::{Family, Parameters};
@@ -43,6 +43,8 @@ const DOUBTED: usize = 2;
 const PLAINLY: f64 = 2.0;
 /// Correlation of neighbouring deviations on a single view (whose noise comes in steps) above which the search went astray.
 const ASTRAY: f64 = 0.5;
+/// Rounds by which a relative is told to be far behind.
+const GLIMPSE: usize = 5;
 /// Least scale from which a body that was set to another shape settles.
 const SHAKEN: f64 = 0.05;
 /// Two hypotheses whose costs differ by less than this many nats are one.
@@ -168,9 +170,17 @@ fn switch(
 ) {
     for _ in 0..SWITCHES[cloud.effort as usize] {
         let Some(best) = pool.first().copied() else { return };
+        let few = &cloud.coarse;
+        // where noise does not blur what sets them apart, few points tell those that are far behind
+        let clear = terms.sight != Sight::OneSide && best.mixture.scale < BLURRED;
+        let limit = refine(&best, few, terms, &schedule(0, 0, best.mixture.scale), work).cost
+            + FAR * few.len() as f64;
         for relative in relatives(&best.parameters, terms.only_eye()) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(SHAKEN);
+            if clear && refine(&start, few, terms, &schedule(GLIMPSE, 0, scale), work).cost > limit {
+                continue;
+            }
             let schedule = schedule(8, MIDDLE_RAYS, scale);
             add(pool, refine(&start, &cloud.middle, terms, &schedule, work));
         }
