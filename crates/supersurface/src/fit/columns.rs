@@ -81,6 +81,11 @@ impl<L: Lane> Sample<L> {
         }
     }
 
+    /// Coordinates, padded.
+    pub(super) fn columns(&self) -> [&[L]; 3] {
+        self.columns.each_ref().map(|column| &**column)
+    }
+
     /// Number of points without padding.
     pub(super) const fn len(&self) -> usize {
         self.count

@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Effort;
 use super::bias;
-use super::columns::Evaluation;
+use super::columns::{Evaluation, Sample};
+use super::finish::PRECISE;
 use super::normal::Normal;
 use super::parameters::{COUNT, EXPONENT, POSITION, RING, ROTATION, TAPER, TWIST};
 use super::prepare::Normalised;
@@ -22,6 +23,7 @@ use super::sights::Sights;
 use super::solver::Hypothesis;
 use super::terms::Sight;
 use crate::numeric::column::Column;
+use crate::numeric::lanes::Lane;
 
 /// Precision of the prior of every parameter in normalised units: a deviation of 1.
 const PRIOR: f64 = 1.0;
@@ -73,30 +75,17 @@ const NAMES: [&str; COUNT] = [
 /// The covariance of a hypothesis; `None` where the points leave it without a finite one.
 pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covariance> {
     let s = &h.parameters;
-    let mut at = Evaluation::default();
-    match (cloud.terms.sight, cloud.effort) {
-        (Sight::OneSide, Effort::Thorough) => Sights::default().fill(s, &cloud.fine, &mut at),
-        _ => at.fill(s, &cloud.fine),
-    }
     let index: Vec<usize> = (0..NAMES.len()).filter(|k| s.family.has(*k)).collect();
     let n = index.len();
-    let counted = cloud.fine.len();
-    let (mut curvatures, mut squares, mut buffer) = (vec![], vec![], vec![]);
-    let mut weights = Column::default();
-    h.mixture.weigh(&at.distances, counted, &mut weights);
-    let distances = &at.distances[..counted];
-    curvatures.extend(distances.iter().map(|d| h.mixture.curvature(*d)));
-    squares.extend(distances.iter().zip(&weights).map(|(d, w)| (w * d) * (w * d)));
-    curvatures.resize(weights.len(), 0.0);
-    squares.resize(weights.len(), 0.0);
-    let mut sums = |weights: &[f64]| Normal::of_points(s.family, &at, weights, &mut buffer);
+    let [curved, squared, weighted] = match h.mixture.scale < PRECISE {
+        true => sums(cloud, h, &cloud.exact()),
+        false => sums(cloud, h, &cloud.fine),
+    };
     let symmetric = |sums: &Normal| {
         DMatrix::from_fn(n, n, |j, k| sums.matrix[index[j.max(k)]][index[j.min(k)]])
     };
-    let mut information = symmetric(&sums(&curvatures));
-    let mut scatter = symmetric(&sums(&squares));
-    let pulls = sums(&weights).gradient;
-    let mut pull = DVector::from_fn(n, |j, _| pulls[index[j]]);
+    let (mut information, mut scatter) = (symmetric(&curved), symmetric(&squared));
+    let mut pull = DVector::from_fn(n, |j, _| weighted.gradient[index[j]]);
     // all points count, not only those that were looked at
     let total = cloud.total as f64;
     let more = total / cloud.fine.len() as f64;
@@ -122,6 +111,26 @@ pub(super) fn covariance(cloud: &Normalised, h: &Hypothesis) -> Option<Covarianc
     let matrix = 0.5 * (&matrix + matrix.transpose());
     let names = index.iter().map(|k| NAMES[*k]).collect();
     matrix.iter().all(|v| v.is_finite()).then_some(Covariance { names, matrix })
+}
+
+/// Normal equations of points by the curvatures of their likelihood, by the squares of their pulls and by their weights.
+fn sums<L: Lane>(cloud: &Normalised, h: &Hypothesis, points: &Sample<L>) -> [Normal; 3] {
+    let s = &h.parameters;
+    let mut at = Evaluation::default();
+    match (cloud.terms.sight, cloud.effort) {
+        (Sight::OneSide, Effort::Thorough) => Sights::default().fill(s, points, &mut at),
+        _ => at.fill(s, points),
+    }
+    let mut weights = Column::default();
+    h.mixture.weigh(&at.distances, points.len(), &mut weights);
+    let padded = |by: &dyn Fn(L, L) -> L| -> Column<L> {
+        let pairs = at.distances.iter().zip(&weights).enumerate();
+        pairs.map(|(i, (d, w))| if i < points.len() { by(*d, *w) } else { L::of(0.0) }).collect()
+    };
+    let curvatures = padded(&|d, _| L::of(h.mixture.curvature(d.wide())));
+    let squares = padded(&|d, w| (w * d) * (w * d));
+    let mut buffer = Vec::new();
+    [&curvatures, &squares, &weights].map(|w| Normal::of_points(s.family, &at, w, &mut buffer))
 }
 
 /// What a step of 1 in the solver's coordinates is in the units of the result.

@@ -9,8 +9,7 @@
 
 use std::f64::consts::PI;
 
-use super::columns::{Evaluation, Sample, distances};
-use super::neighbours::Neighbours;
+use super::columns::{Evaluation, Sample};
 use super::noise::Mixture;
 use super::parameters::Parameters;
 use super::prepare::Normalised;
@@ -18,6 +17,7 @@ use super::samples::sample;
 use super::solver::{Hypothesis, NOISE_FLOOR};
 use super::terms::Sight;
 use crate::Vector;
+use crate::numeric::lanes::{Job, Lane, dispatch};
 use crate::numeric::random::Stream;
 
 /// Coverage from which the points show all of the surface. Chance alone makes it less than 1.
@@ -49,18 +49,46 @@ fn coverage(h: &Hypothesis, points: &Sample<f32>) -> f64 {
     const DUE: f64 = 20.0;
     let s: &Parameters = &h.parameters;
     let near = 3.0 * h.mixture.scale + 1e-3;
-    let on: Vec<Vector> = distances(s, points.points())
-        .into_iter()
-        .zip(points.points())
-        .filter(|(d, _)| d.abs() < near)
-        .map(|(_, p)| p)
-        .collect();
+    let mut at = Evaluation::default();
+    at.fill_distances(s, points);
+    let all = points.points().zip(&at.distances);
+    let on = Sample::new(all.filter(|(_, d)| d.wide().abs() < near).map(|(p, _)| p));
     let mut probes = Vec::with_capacity(PROBES);
     sample(s, PROBES, &mut Stream::new(5, 1), &mut probes);
     let density = on.len().max(1) as f64 / s.area();
     let square = (DUE / (PI * density)).max((3.0 * h.mixture.scale).powi(2));
     let due = PI * square * density;
-    let found = Neighbours::among(on.into_iter());
-    let shares = probes.iter().map(|p| (found.count(p, square) as f64 / due).min(1.0));
-    shares.sum::<f64>() / probes.len().max(1) as f64
+    let mut found = 0.0;
+    dispatch(Found { points: on.columns(), probes: &probes, square, due, out: &mut found });
+    found / probes.len().max(1) as f64
+}
+
+/// Sum over places of the share of the due points that are within some distance, at most 1.
+struct Found<'a> {
+    points: [&'a [f32]; 3],
+    probes: &'a [Vector],
+    /// The distance's square.
+    square: f64,
+    due: f64,
+    out: &'a mut f64,
+}
+
+impl Job for Found<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        const WIDTH: usize = <f32 as Lane>::WIDTH;
+        let [x, y, z] = self.points.map(|column| column.chunks_exact(WIDTH));
+        let square = self.square as f32;
+        for probe in self.probes {
+            let [px, py, pz] = [probe.x as f32, probe.y as f32, probe.z as f32];
+            let mut found = [0.0f32; WIDTH];
+            for ((x, y), z) in x.clone().zip(y.clone()).zip(z.clone()) {
+                for i in 0..WIDTH {
+                    let [a, b, c] = [x[i] - px, y[i] - py, z[i] - pz];
+                    found[i] += if a * a + b * b + c * c < square { 1.0 } else { 0.0 };
+                }
+            }
+            *self.out += (f64::from(found.iter().sum::<f32>()) / self.due).min(1.0);
+        }
+    }
 }

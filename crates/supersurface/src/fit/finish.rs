@@ -16,7 +16,9 @@ use crate::numeric::lanes::Lane;
 const RAYS: usize = 48;
 /// Most rounds on all points.
 const ROUNDS: usize = 15;
-/// The last rounds gain less than this many nats, so that the way there does not matter.
+/// Noise, in normalised lengths, below which single precision may be seen.
+pub(super) const PRECISE: f64 = 1e-3;
+/// What such points leave to gain, in nats.
 const END: f64 = 3e-7;
 /// Rounds of the others that are compared, and the nats below which a gain ends them.
 const ROUGHLY: usize = 6;
@@ -34,13 +36,9 @@ pub(super) const COMPARING: usize = 400;
 
 /// The best of a pool of hypotheses (best first, not empty), refined on all points.
 pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> Hypothesis {
-    // in single precision to where little is left to gain
-    let (single, double) = (&mut Workspace::default(), &mut Workspace::default());
-    let to_the_end = |h: &Hypothesis, single: &mut Workspace<f32>| {
-        refine(h, &cloud.fine_single, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), single)
-    };
-    let settled = |h: &Hypothesis, double: &mut Workspace| {
-        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), double)
+    let work = &mut Workspace::default();
+    let settled = |h: &Hypothesis, work: &mut Workspace<f32>| {
+        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
     };
     let close = WORSE * cloud.middle.len() as f64;
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
@@ -48,45 +46,51 @@ pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> 
         (Sight::AllAround { volume }, _) => volume,
         (Sight::Partly, _) => {
             let rivals = pool[..1].iter().chain(near.take(COMPARED - 1));
-            let rivals = rivals.map(|h| to_the_end(h, single)).collect();
-            return settled(&cheapest(rivals).unwrap_or(pool[0]), double);
+            let rivals = rivals.map(|h| settled(h, work)).collect();
+            return polished(cloud, terms, &cheapest(rivals).unwrap_or(pool[0]));
         }
         (Sight::OneSide, Effort::Rough) => return pool[0],
-        (Sight::OneSide, Effort::Quick) => return settled(&pool[0], double),
+        (Sight::OneSide, Effort::Quick) => return settled(&pool[0], work),
         (Sight::OneSide, Effort::Thorough) => {
             let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));
-            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, single)).collect();
+            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, work)).collect();
             let best = cheapest(rivals).unwrap_or(pool[0]);
-            let best = along_rays(&best, &cloud.fine_single, terms, single);
-            return along_rays(&best, &cloud.fine, terms, double);
+            let best = along_rays(&best, &cloud.fine, terms, work);
+            return polished(cloud, terms, &best);
         }
     };
-    let best = to_the_end(&pool[0], single);
-    let exactly = |h: &Hypothesis, double: &mut Workspace| {
-        let last = Schedule { tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
-        refine(h, &cloud.fine, terms, &last, double)
-    };
-    let best = exactly(&best, double);
+    let best = polished(cloud, terms, &settled(&pool[0], work));
     let noise = best.mixture.scale;
     if noise < BIASED {
         return best;
     }
     let some: Vec<Vector> = spread(&cloud.points, COMPARING);
     let corrected = |h: &Hypothesis| {
-        let unbiased = without_bias(h, &cloud.fine_single);
+        let unbiased = without_bias(h, &cloud.fine);
         let cost = smeared_cost(&unbiased.parameters, &h.mixture, &some, noise, volume);
         Hypothesis { cost, ..unbiased }
     };
     let unbiased = corrected(&best);
     let roughly = near.take(if noise < BLURRED { 0 } else { COMPARED - 1 }).map(|h| {
         let rough = Schedule { tolerance: ROUGH, ..schedule(ROUGHLY, RAYS, h.mixture.scale) };
-        let fitted = refine(h, &cloud.fine_single, terms, &rough, single);
+        let fitted = refine(h, &cloud.fine, terms, &rough, work);
         (fitted, corrected(&fitted).cost)
     });
     match roughly.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((fitted, cost)) if cost < unbiased.cost => corrected(&exactly(&fitted, double)),
+        Some((fitted, cost)) if cost < unbiased.cost => {
+            corrected(&polished(cloud, terms, &settled(&fitted, work)))
+        }
         _ => unbiased,
     }
+}
+
+/// A hypothesis whose points show less noise than single precision is worth, refined with all digits.
+fn polished(cloud: &Normalised, terms: &Terms, h: &Hypothesis) -> Hypothesis {
+    if h.mixture.scale > PRECISE {
+        return *h;
+    }
+    let last = Schedule { tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
+    refine(h, &cloud.exact(), terms, &last, &mut Workspace::default())
 }
 
 /// A hypothesis refined by residuals along the rays in which some points were seen.

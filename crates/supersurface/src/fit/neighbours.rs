@@ -3,12 +3,17 @@
 //! The cells are so large that an occupied one holds some points of a surface; rows of cells lie side by side in the
 //! list, so that a neighbourhood is a few stretches of it. What is found does not depend on the cells.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use crate::Vector;
 
 /// Points of a surface in an occupied cell.
 const POINTS: f64 = 4.0;
+/// How many more than are wanted are looked for at first, as a ratio, and the ratio of the squared distances from one
+/// trial to the next.
+const AHEAD: f64 = 1.6;
+const FARTHER: f64 = 2.0;
 /// Most cells along an axis.
 const MOST: usize = 64;
 
@@ -23,8 +28,6 @@ pub(super) struct Neighbours {
     cell: f64,
     counts: [usize; 3],
     near: Vec<(f64, u32)>,
-    /// Squared distance within which enough were found last.
-    reach: f64,
 }
 
 impl Neighbours {
@@ -45,8 +48,7 @@ impl Neighbours {
             low,
             cell,
             counts,
-            near: Vec::new(),
-            reach: cell * cell,
+            near: vec![(0.0, 0); points.len() + 1],
         };
         // counted, then laid down from the end of each cell to its beginning
         for p in &points {
@@ -81,24 +83,47 @@ impl Neighbours {
     pub(super) fn nearest(&mut self, p: &Vector, count: usize) -> &[(f64, u32)] {
         let count = count.min(self.points.len());
         let mut near = std::mem::take(&mut self.near);
-        let last = loop {
-            near.clear();
-            self.within(p, self.reach, |square, i| near.push((square, i)));
-            if near.len() >= count || self.reach.is_infinite() {
-                break count.min(near.len()).checked_sub(1);
+        let mut reach = self.expected(p, AHEAD * count as f64);
+        let found = loop {
+            let mut found = 0;
+            // all are written and some kept: a branch would be guessed wrong too often
+            self.around(p, reach, |square, i| {
+                near[found] = (square, i);
+                found += usize::from(square < reach);
+            });
+            if found >= count || reach.is_infinite() {
+                break found;
             }
-            self.reach = if self.reach > 0.0 { 4.0 * self.reach } else { f64::INFINITY };
+            reach = if reach > 0.0 { FARTHER * reach } else { f64::INFINITY };
         };
         self.near = near;
-        let Some(last) = last else { return &[] };
-        self.near.select_nth_unstable_by(last, |a, b| a.0.total_cmp(&b.0));
-        // about twice as many the next time
-        self.reach = 2.0 * self.near[last].0;
+        let Some(last) = count.min(found).checked_sub(1) else { return &[] };
+        self.near[..found].select_nth_unstable_by(last, |a, b| a.0.total_cmp(&b.0));
         &self.near[..=last]
+    }
+
+    /// Squared distance within which about `count` points are expected, by the cell of a place and its neighbours.
+    fn expected(&self, p: &Vector, count: f64) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|k| self.along(k, p[k]));
+        let row = (z * self.counts[1] + y) * self.counts[0];
+        let many = |from: usize, to: usize| f64::from(self.starts[row + to] - self.starts[row + from]);
+        let beside = many(x.saturating_sub(1), (x + 2).min(self.counts[0])) / 3.0;
+        let density = many(x, x + 1).max(beside).max(0.5) / (self.cell * self.cell);
+        count / (PI * density)
     }
 
     /// Calls `visit(squared distance, index)` for all points that are nearer to a place than the root of `reach`.
     pub(super) fn within(&self, p: &Vector, reach: f64, mut visit: impl FnMut(f64, u32)) {
+        self.around(p, reach, |square, i| {
+            if square < reach {
+                visit(square, i);
+            }
+        });
+    }
+
+    /// Calls `visit(squared distance, index)` for all points that may be so near.
+    #[inline(always)]
+    fn around(&self, p: &Vector, reach: f64, mut visit: impl FnMut(f64, u32)) {
         if self.points.is_empty() {
             return;
         }
@@ -110,21 +135,12 @@ impl Neighbours {
                 let row = (z * self.counts[1] + y) * self.counts[0];
                 let [from, to] = [row + x.start, row + x.end].map(|c| self.starts[c] as usize);
                 for (q, i) in &self.points[from..to] {
-                    let square = (q - p).norm_squared();
-                    if square < reach {
-                        visit(square, *i);
-                    }
+                    visit((q - p).norm_squared(), *i);
                 }
             }
         }
     }
 
-    /// How many are that near.
-    pub(super) fn count(&self, p: &Vector, reach: f64) -> usize {
-        let mut found = 0;
-        self.within(p, reach, |_, _| found += 1);
-        found
-    }
 }
 
 #[cfg(test)]
@@ -144,7 +160,9 @@ mod tests {
             let near = neighbours.nearest(p, 5);
             assert!(near.iter().any(|n| points[n.1 as usize] == *p));
             assert_eq!((near.len(), near[4].0), (5, squares[4]));
-            assert_eq!(neighbours.count(p, squares[9]), 9);
+            let mut within = 0;
+            neighbours.within(p, squares[9], |_, _| within += 1);
+            assert_eq!(within, 9);
         }
         assert_eq!(neighbours.nearest(&points[0], 999).len(), 301);
         let mut same = Neighbours::among((0..9).map(|_| Vector::zeros()));

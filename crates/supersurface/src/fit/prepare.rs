@@ -32,13 +32,12 @@ const SUPPORT_TOLERANCE: f64 = 0.01;
 /// What was seen, with zero mean and unit root mean square, along its principal axes.
 pub(super) struct Normalised {
     pub(super) placement: Placement,
-    /// What is searched is told apart in single precision: twice as many numbers fill a register.
+    /// Single precision tells bodies apart as long as there is noise, and twice as many numbers fill a register.
     pub(super) sketch: Sample<f32>,
     pub(super) coarse: Sample<f32>,
     pub(super) middle: Sample<f32>,
-    /// All points, for what needs no more than single precision, and for the last rounds.
-    pub(super) fine_single: Sample<f32>,
-    pub(super) fine: Sample,
+    /// All points.
+    pub(super) fine: Sample<f32>,
     pub(super) points: Vec<Vector>,
     /// Which view has seen each of the points.
     pub(super) seen_by: Vec<usize>,
@@ -116,7 +115,6 @@ impl Normalised {
             sketch: all.sample(&places, SKETCH),
             coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
             middle: all.sample(&places, MIDDLE[effort as usize]),
-            fine_single: fine.sample(&places, total),
             fine: fine.sample(&places, total),
             frames: frames(&start, &terms, LOOKED_AT[effort as usize]),
             points,
@@ -125,6 +123,12 @@ impl Normalised {
             effort,
             total,
         })
+    }
+
+    /// All points as exactly as they are known.
+    pub(super) fn exact(&self) -> Sample<f64> {
+        let places: Vec<Vector> = self.terms.eyes.iter().map(|eye| eye.place).collect();
+        Seen { points: &self.points, by: &self.seen_by }.sample(&places, self.total)
     }
 }
 

@@ -155,6 +155,8 @@ pub(super) fn refine<L: Lane>(
     let (mut failures, mut settled) = (0, false);
     let n = points.len();
     let counts = [n, schedule.rays];
+    // of the sum of so many costs
+    let rounding = L::EPSILON * n as f64;
     work.evaluate(&s, points, schedule);
     work.accept();
     mixture.density = terms.outlier_density(&s);
@@ -180,7 +182,7 @@ pub(super) fn refine<L: Lane>(
             work.evaluate(&next, points, schedule);
             let mut after = mixture.cost(&work.trial.distances, n);
             work.add(terms, &next, counts, mixture.scale, &mut after);
-            if after < normal.cost - LEAST_GAIN {
+            if after < normal.cost - LEAST_GAIN + rounding {
                 (s, gained) = (next, true);
                 work.accept();
                 damping = (damping * 0.25).max(1e-7);

@@ -87,6 +87,8 @@ pub trait Lane:
     const TINY: Self;
     /// `e^-LOST` is lost beside 1, and its square is a normal number: smaller ones would stall the units.
     const LOST: Self;
+    /// What the last digit of 1 is worth.
+    const EPSILON: f64;
     /// Numbers in a block: as many as fill the widest register, or two of the next.
     const WIDTH: usize;
     /// The nearest number.
@@ -134,6 +136,7 @@ pub trait Lane:
 impl Lane for f64 {
     const TINY: Self = 1e-300;
     const LOST: Self = 40.0;
+    const EPSILON: f64 = f64::EPSILON;
     const WIDTH: usize = WIDTH;
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -208,6 +211,7 @@ impl Lane for f64 {
 impl Lane for f32 {
     const TINY: Self = 1e-30;
     const LOST: Self = 20.0;
+    const EPSILON: f64 = f32::EPSILON as f64;
     const WIDTH: usize = WIDEST;
     #[inline(always)]
     fn of(value: f64) -> Self {
