@@ -28,13 +28,23 @@ impl<L: Lane> Sample<L> {
     }
 
     /// Points and the directions in which they were seen.
-    pub(super) fn seen(
-        points: impl Iterator<Item = Vector>,
-        rays: impl Iterator<Item = Vector>,
-    ) -> Self {
-        let mut sample = Self::new(points);
-        sample.rays = into_columns(rays, sample.columns[0].len());
+    pub(super) fn seen(seen: impl Iterator<Item = (Vector, Vector)>) -> Self {
+        let mut sample = Self::default();
+        sample.set_seen(seen);
         sample
+    }
+
+    /// Takes other points with the directions in which they were seen.
+    pub(super) fn set_seen(&mut self, seen: impl Iterator<Item = (Vector, Vector)>) {
+        self.columns.iter_mut().chain(&mut self.rays).for_each(Column::clear);
+        for (p, ray) in seen {
+            for k in 0..3 {
+                self.columns[k].push(L::of(p[k]));
+                self.rays[k].push(L::of(ray[k]));
+            }
+        }
+        self.pad();
+        self.rays.iter_mut().for_each(|ray| ray.resize(self.columns[0].len(), L::of(0.0)));
     }
 
     /// Takes the points of another sample, each moved along its ray by its way.
@@ -74,11 +84,13 @@ impl<L: Lane> Sample<L> {
             z.push(L::of(p.z));
         }
         self.rays.iter_mut().for_each(Column::clear);
-        self.count = x.len();
+        self.pad();
+    }
+
+    fn pad(&mut self) {
+        self.count = self.columns[0].len();
         let padded = self.count.next_multiple_of(L::WIDTH);
-        for column in [x, y, z] {
-            column.resize(padded, L::of(PADDING));
-        }
+        self.columns.iter_mut().for_each(|column| column.resize(padded, L::of(PADDING)));
     }
 
     /// Coordinates, padded.
@@ -98,18 +110,6 @@ impl<L: Lane> Sample<L> {
     pub(super) fn points(&self) -> impl Iterator<Item = Vector> + '_ {
         (0..self.count).map(|i| self.point(i))
     }
-}
-
-fn into_columns<L: Lane>(vectors: impl Iterator<Item = Vector>, padded: usize) -> [Column<L>; 3] {
-    let mut columns = [(); 3].map(|()| Column::default());
-    for v in vectors {
-        columns.iter_mut().zip(v.iter()).for_each(|(column, x)| column.push(L::of(*x)));
-    }
-    let known = !columns[0].is_empty();
-    columns.map(|mut column| {
-        column.resize(if known { padded } else { 0 }, L::of(0.0));
-        column
-    })
 }
 
 /// First-order distances and their derivatives, a column a parameter; padded like the sample. Columns of parameters

@@ -82,21 +82,14 @@ impl Neighbours {
     /// farthest, the others in no order.
     pub(super) fn nearest(&mut self, p: &Vector, count: usize) -> &[(f64, u32)] {
         let count = count.min(self.points.len());
-        let mut near = std::mem::take(&mut self.near);
         let mut reach = self.expected(p, AHEAD * count as f64);
         let found = loop {
-            let mut found = 0;
-            // all are written and some kept: a branch would be guessed wrong too often
-            self.around(p, reach, |square, i| {
-                near[found] = (square, i);
-                found += usize::from(square < reach);
-            });
+            let found = self.within(p, reach).len();
             if found >= count || reach.is_infinite() {
                 break found;
             }
             reach = if reach > 0.0 { FARTHER * reach } else { f64::INFINITY };
         };
-        self.near = near;
         let Some(last) = count.min(found).checked_sub(1) else { return &[] };
         self.near[..found].select_nth_unstable_by(last, |a, b| a.0.total_cmp(&b.0));
         &self.near[..=last]
@@ -106,41 +99,36 @@ impl Neighbours {
     fn expected(&self, p: &Vector, count: f64) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|k| self.along(k, p[k]));
         let row = (z * self.counts[1] + y) * self.counts[0];
-        let many = |from: usize, to: usize| f64::from(self.starts[row + to] - self.starts[row + from]);
+        let many =
+            |from: usize, to: usize| f64::from(self.starts[row + to] - self.starts[row + from]);
         let beside = many(x.saturating_sub(1), (x + 2).min(self.counts[0])) / 3.0;
         let density = many(x, x + 1).max(beside).max(0.5) / (self.cell * self.cell);
         count / (PI * density)
     }
 
-    /// Calls `visit(squared distance, index)` for all points that are nearer to a place than the root of `reach`.
-    pub(super) fn within(&self, p: &Vector, reach: f64, mut visit: impl FnMut(f64, u32)) {
-        self.around(p, reach, |square, i| {
-            if square < reach {
-                visit(square, i);
-            }
-        });
-    }
-
-    /// Calls `visit(squared distance, index)` for all points that may be so near.
-    #[inline(always)]
-    fn around(&self, p: &Vector, reach: f64, mut visit: impl FnMut(f64, u32)) {
+    /// Those that are nearer to a place than the root of `reach`, as (squared distance, index).
+    pub(super) fn within(&mut self, p: &Vector, reach: f64) -> &[(f64, u32)] {
         if self.points.is_empty() {
-            return;
+            return &[];
         }
         let radius = reach.sqrt();
         let [x, y, z]: [Range<usize>; 3] =
             [0, 1, 2].map(|k| self.along(k, p[k] - radius)..self.along(k, p[k] + radius) + 1);
+        let mut found = 0;
         for z in z {
             for y in y.clone() {
                 let row = (z * self.counts[1] + y) * self.counts[0];
                 let [from, to] = [row + x.start, row + x.end].map(|c| self.starts[c] as usize);
                 for (q, i) in &self.points[from..to] {
-                    visit((q - p).norm_squared(), *i);
+                    let square = (q - p).norm_squared();
+                    // all are written and some kept: a branch would be guessed wrong too often
+                    self.near[found] = (square, *i);
+                    found += usize::from(square < reach);
                 }
             }
         }
+        &self.near[..found]
     }
-
 }
 
 #[cfg(test)]
@@ -160,9 +148,7 @@ mod tests {
             let near = neighbours.nearest(p, 5);
             assert!(near.iter().any(|n| points[n.1 as usize] == *p));
             assert_eq!((near.len(), near[4].0), (5, squares[4]));
-            let mut within = 0;
-            neighbours.within(p, squares[9], |_, _| within += 1);
-            assert_eq!(within, 9);
+            assert_eq!(neighbours.within(p, squares[9]).len(), 9);
         }
         assert_eq!(neighbours.nearest(&points[0], 999).len(), 301);
         let mut same = Neighbours::among((0..9).map(|_| Vector::zeros()));

@@ -34,7 +34,7 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
         return whole();
     }
     let (mut piece, mut sizes) = (vec![usize::MAX; points.len()], Vec::new());
-    let (mut open, mut found) = (Vec::new(), Vec::new());
+    let mut open = Vec::new();
     for i in 0..points.len() {
         if piece[i] != usize::MAX {
             continue;
@@ -42,17 +42,16 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
         let mut size = 0;
         open.push(i);
         while let Some(at) = open.pop() {
-            found.clear();
-            neighbours.within(&points[at], radius * radius, |_, j| found.push(j as usize));
+            let found = neighbours.within(&points[at], radius * radius);
             // the point itself is among them
             if found.len() <= NEIGHBOURS {
                 continue;
             }
-            for j in &found {
-                if piece[*j] == usize::MAX {
-                    piece[*j] = sizes.len();
+            for j in found.iter().map(|(_, j)| *j as usize) {
+                if piece[j] == usize::MAX {
+                    piece[j] = sizes.len();
                     size += 1;
-                    open.push(*j);
+                    open.push(j);
                 }
             }
         }

@@ -65,9 +65,15 @@ impl<'a> Moved<'a> {
     fn by(cloud: &'a Normalised, moves: Vec<Isometry3<f64>>) -> Self {
         let at = |p: &Vector, k: usize| (moves[k] * Point::from(*p)).coords;
         let points = cloud.points.iter().zip(&cloud.seen_by).map(|(p, k)| at(p, *k));
-        let seen = if cloud.fine.has_rays() { &cloud.seen_by[..] } else { &[] };
-        let rays = seen.iter().enumerate().map(|(i, k)| moves[*k] * cloud.fine.ray(i));
-        let sample = Sample::seen(points, rays);
+        let sample = match cloud.fine.has_rays() {
+            true => Sample::seen(
+                points
+                    .zip(&cloud.seen_by)
+                    .enumerate()
+                    .map(|(i, (p, k))| (p, moves[*k] * cloud.fine.ray(i))),
+            ),
+            false => Sample::new(points),
+        };
         let mut terms = cloud.terms.clone();
         for (k, eye) in terms.eyes.iter_mut().enumerate() {
             eye.place = at(&eye.place, k);

@@ -147,9 +147,11 @@ impl Seen<'_> {
     /// About `count` of the points, seen from the given places of the sensors where these are known.
     fn sample<L: Lane>(&self, sensors: &[Vector], count: usize) -> Sample<L> {
         let (points, by) = self.chosen(spread_over(self.points.len(), count));
-        let away = |(p, k): (&Vector, &usize)| Some((p - sensors.get(*k)?).normalize());
-        let rays = points.iter().zip(&by).filter_map(away);
-        Sample::seen(points.iter().copied(), rays)
+        if sensors.is_empty() {
+            return Sample::new(points.into_iter());
+        }
+        let away = |(p, k): (Vector, usize)| (p, (p - sensors[k]).normalize());
+        Sample::seen(points.into_iter().zip(by).map(away))
     }
 }
 

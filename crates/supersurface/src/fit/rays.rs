@@ -4,37 +4,27 @@
 //! the way to it; a toroid may have two, so samples choose the deeper one first. All lines are searched side by side.
 
 use super::columns::{Evaluation, Sample};
-use super::parameters::Parameters;
+use super::parameters::{POSITION, Parameters};
 use crate::Vector;
-use crate::numeric::lanes::Lane;
+use crate::numeric::column::Column;
+use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
 const SAMPLES: usize = 6;
 const HALVINGS: usize = 6;
 
-/// One line, and the stretch of it in which the deepest place is looked for.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    way: Vector,
-    low: f64,
-    high: f64,
-    deepest: f64,
-    depth: f64,
-}
-
-impl Line {
-    /// Takes a place that lies deeper than those before.
-    fn take(&mut self, at: f64, depth: f64) {
-        if depth < self.depth {
-            (self.deepest, self.depth) = (at, depth);
-        }
-    }
-}
-
-/// Buffers of the search.
+/// Lines, the stretch of each in which its deepest place is looked for, and buffers.
 #[derive(Debug, Default)]
 pub(super) struct Rays<L> {
-    lines: Vec<Line>,
+    /// From the sensor along whole ways to their ends.
+    lines: Sample<L>,
+    low: Column<L>,
+    high: Column<L>,
+    /// The deepest place so far, as a share of the way, and the signed distance there.
+    deepest: Column<L>,
+    depth: Column<L>,
+    /// Where each is looked at.
+    at: Column<L>,
     places: Sample<L>,
     evaluation: Evaluation<L>,
 }
@@ -50,51 +40,102 @@ impl<L: Lane> Rays<L> {
         found: &mut Vec<Vector>,
     ) {
         let around = Around::new(s, from);
-        self.lines.clear();
-        self.lines.extend(ends.filter_map(|end| {
-            let (low, high) = around.near(end)?;
-            Some(Line { way: end - from, low, high, deepest: low, depth: f64::INFINITY })
+        self.low.clear();
+        self.high.clear();
+        let (low, high) = (&mut self.low, &mut self.high);
+        self.lines.set_seen(ends.filter_map(|end| {
+            let stretch = around.near(end)?;
+            low.push(L::of(stretch.0));
+            high.push(L::of(stretch.1));
+            Some((*from, end - from))
         }));
-        if self.lines.is_empty() {
+        let count = self.lines.len();
+        if count == 0 {
             return;
         }
+        let padded = self.lines.columns()[0].len();
+        for (column, value) in [(&mut self.low, 0.0), (&mut self.high, 0.0), (&mut self.at, 0.0)] {
+            column.resize(padded, L::of(value));
+        }
+        self.depth.clear();
+        self.depth.resize(padded, L::of(f64::from(f32::MAX)));
+        self.deepest.clear();
+        self.deepest.resize(padded, L::of(0.0));
         let mut halvings = HALVINGS;
         if s.family.is_ring() || s.family.is_deformed() {
-            self.choose_valleys(s, from);
+            self.choose_valleys(s);
             halvings -= 2;
         }
         for _ in 0..halvings {
-            let middle = |l: &Line| 0.5 * (l.low + l.high);
-            self.places.set(self.lines.iter().map(|l| from + l.way * middle(l)));
+            self.place(0.5);
             self.evaluation.fill_normals(s, &self.places);
-            for (i, line) in self.lines.iter_mut().enumerate() {
-                let t = middle(line);
-                line.take(t, self.evaluation.distances[i].wide());
-                let slope = self.evaluation.outwards(i).dot(&line.way);
-                if slope > 0.0 { line.high = t } else { line.low = t }
-            }
+            self.take();
+            let gradient = [0, 1, 2].map(|k| &*self.evaluation.rows[POSITION + k]);
+            let ways = self.lines.rays();
+            let (low, high) = (&mut self.low, &mut self.high);
+            dispatch(Halve { gradient, ways, at: &self.at, low, high });
         }
-        let inside = self.lines.iter().filter(|l| l.depth < 0.0);
-        found.extend(inside.map(|l| from + l.way * l.deepest));
+        let inside = (0..count).filter(|i| self.depth[*i] < L::of(0.0));
+        found.extend(inside.map(|i| from + self.lines.ray(i) * self.deepest[i].wide()));
+    }
+
+    /// Looks at each line at this share of its stretch.
+    fn place(&mut self, share: f64) {
+        let share = L::of(share);
+        for ((at, low), high) in self.at.iter_mut().zip(&self.low).zip(&self.high) {
+            *at = *low + (*high - *low) * share;
+        }
+        self.places.set_along(&self.lines, &self.at);
+    }
+
+    /// Takes the places that lie deeper than those before.
+    fn take(&mut self) {
+        let best = self.deepest.iter_mut().zip(self.depth.iter_mut());
+        for (((deepest, depth), at), d) in best.zip(&self.at).zip(&self.evaluation.distances) {
+            *deepest = if *d < *depth { *at } else { *deepest };
+            *depth = depth.least(*d);
+        }
     }
 
     /// Narrows each line to the neighbourhood of its deepest sample.
-    fn choose_valleys(&mut self, s: &Parameters, from: &Vector) {
-        let at = |l: &Line, k: usize| l.low + (l.high - l.low) * (k as f64 / SAMPLES as f64);
-        let samples = |l| (0..=SAMPLES).map(move |k| (l, k));
-        let samples = self.lines.iter().flat_map(samples);
-        self.places.set(samples.map(|(l, k)| from + l.way * at(l, k)));
-        self.evaluation.fill_distances(s, &self.places);
-        let depths = self.evaluation.distances.chunks_exact(SAMPLES + 1);
-        for (line, depths) in self.lines.iter_mut().zip(depths) {
-            for (k, depth) in depths.iter().enumerate() {
-                line.take(at(line, k), depth.wide());
-            }
+    fn choose_valleys(&mut self, s: &Parameters) {
+        for k in 0..=SAMPLES {
+            self.place(k as f64 / SAMPLES as f64);
+            self.evaluation.fill_distances(s, &self.places);
+            self.take();
         }
-        for line in &mut self.lines {
-            let step = (line.high - line.low) / SAMPLES as f64;
-            line.low = line.low.max(line.deepest - step);
-            line.high = line.high.min(line.deepest + step);
+        let share = L::of(1.0 / SAMPLES as f64);
+        for ((low, high), deepest) in
+            self.low.iter_mut().zip(self.high.iter_mut()).zip(&self.deepest)
+        {
+            let step = (*high - *low) * share;
+            (*low, *high) = (low.most(*deepest - step), high.least(*deepest + step));
+        }
+    }
+}
+
+/// Leaves the half of each stretch in which the valley lies, by the slope at its middle.
+struct Halve<'a, L> {
+    /// Derivatives of the distances by the body's place, which are those by a point's but for the sign.
+    gradient: [&'a [L]; 3],
+    ways: &'a [Column<L>; 3],
+    at: &'a [L],
+    low: &'a mut [L],
+    high: &'a mut [L],
+}
+
+impl<L: Lane> Job for Halve<'_, L> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let ([gx, gy, gz], [wx, wy, wz]) = (self.gradient, self.ways);
+        let n = self.at.len();
+        let (gx, gy, gz, wx, wy, wz) = (&gx[..n], &gy[..n], &gz[..n], &wx[..n], &wy[..n], &wz[..n]);
+        let (low, high) = (&mut self.low[..n], &mut self.high[..n]);
+        for i in 0..n {
+            let falls = gx[i] * wx[i] + gy[i] * wy[i] + gz[i] * wz[i] >= L::of(0.0);
+            let at = self.at[i];
+            low[i] = if falls { at } else { low[i] };
+            high[i] = if falls { high[i] } else { at };
         }
     }
 }

@@ -178,7 +178,8 @@ fn switch(
         for relative in relatives(&best.parameters, terms.only_eye()) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(SHAKEN);
-            if clear && refine(&start, few, terms, &schedule(GLIMPSE, 0, scale), work).cost > limit {
+            if clear && refine(&start, few, terms, &schedule(GLIMPSE, 0, scale), work).cost > limit
+            {
                 continue;
             }
             let schedule = schedule(8, MIDDLE_RAYS, scale);

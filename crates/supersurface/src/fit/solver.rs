@@ -152,7 +152,7 @@ pub(super) fn refine<L: Lane>(
     let mut mixture = start.mixture;
     let mut annealed = schedule.scale;
     let mut damping = 1e-3;
-    let (mut failures, mut settled) = (0, false);
+    let (mut failures, mut settled, mut looked) = (0, false, false);
     let n = points.len();
     let counts = [n, schedule.rays];
     // of the sum of so many costs
@@ -165,6 +165,7 @@ pub(super) fn refine<L: Lane>(
     'rounds: for round in 0..schedule.rounds {
         if round % LOOKS == 0 {
             work.look(&s, terms, schedule.rays);
+            looked = true;
         }
         let mut normal = work.normal(s.family, &mixture, n);
         work.add(terms, &s, counts, mixture.scale, &mut normal);
@@ -183,7 +184,7 @@ pub(super) fn refine<L: Lane>(
             let mut after = mixture.cost(&work.trial.distances, n);
             work.add(terms, &next, counts, mixture.scale, &mut after);
             if after < normal.cost - LEAST_GAIN + rounding {
-                (s, gained) = (next, true);
+                (s, gained, looked) = (next, true, false);
                 work.accept();
                 damping = (damping * 0.25).max(1e-7);
                 break;
@@ -203,7 +204,9 @@ pub(super) fn refine<L: Lane>(
         }
     }
     mixture.update(&work.now.distances, n, [NOISE_FLOOR, noisiest(&s)], 6);
-    work.look(&s, terms, schedule.rays);
+    if !looked {
+        work.look(&s, terms, schedule.rays);
+    }
     let mut cost = mixture.cost(&work.now.distances, n)
         + terms.spread_cost(&s, n)
         + terms.facing_cost(&s, &mixture, points, &work.now);
