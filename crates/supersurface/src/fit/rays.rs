@@ -10,7 +10,7 @@ use crate::numeric::column::Column;
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Samples of a line by which the deeper of two valleys is chosen, and halvings of what is left.
-const SAMPLES: usize = 6;
+const SAMPLES: usize = 4;
 const HALVINGS: usize = 6;
 
 /// Lines, the stretch of each in which its deepest place is looked for, and buffers.

@@ -81,7 +81,7 @@ fn noisiest(s: &Parameters) -> f64 {
 const LEASHED: f64 = 0.01;
 
 /// Rounds from one look along the lines of sight to the next.
-const LOOKS: usize = 2;
+const LOOKS: usize = 3;
 
 /// Buffers that are used again from one hypothesis to the next.
 #[derive(Debug, Default)]
