@@ -18,6 +18,8 @@ const RAYS: usize = 48;
 const ROUNDS: usize = 15;
 /// Noise, in normalised lengths, below which single precision may be seen.
 pub(super) const PRECISE: f64 = 1e-3;
+/// What the last rounds leave to gain, in nats.
+const SETTLED: f64 = 0.005;
 /// What such points leave to gain, in nats.
 const END: f64 = 3e-7;
 /// Rounds of the others that are compared, and the nats below which a gain ends them.
@@ -38,7 +40,8 @@ pub(super) const COMPARING: usize = 400;
 pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> Hypothesis {
     let work = &mut Workspace::default();
     let settled = |h: &Hypothesis, work: &mut Workspace<f32>| {
-        refine(h, &cloud.fine, terms, &schedule(ROUNDS, RAYS, h.mixture.scale), work)
+        let last = Schedule { tolerance: SETTLED, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
+        refine(h, &cloud.fine, terms, &last, work)
     };
     let close = WORSE * cloud.middle.len() as f64;
     let near = pool[1..].iter().filter(|h| h.cost - pool[0].cost < close);
@@ -53,9 +56,9 @@ pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> 
         (Sight::OneSide, Effort::Quick) => return settled(&pool[0], work),
         (Sight::OneSide, Effort::Thorough) => {
             let rivals = pool[..1].iter().chain(near.take(SIGHTED - 1));
-            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, work)).collect();
+            let rivals = rivals.map(|h| along_rays(h, &cloud.middle, terms, ROUGH, work)).collect();
             let best = cheapest(rivals).unwrap_or(pool[0]);
-            let best = along_rays(&best, &cloud.fine, terms, work);
+            let best = along_rays(&best, &cloud.fine, terms, SETTLED, work);
             return polished(cloud, terms, &best);
         }
     };
@@ -98,9 +101,10 @@ fn along_rays<L: Lane>(
     h: &Hypothesis,
     points: &Sample<L>,
     terms: &Terms,
+    tolerance: f64,
     work: &mut Workspace<L>,
 ) -> Hypothesis {
-    let last = Schedule { along_rays: true, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
+    let last = Schedule { along_rays: true, tolerance, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
     refine(h, points, terms, &last, work)
 }
 

@@ -15,7 +15,7 @@ const LEAST_POINTS: usize = 12;
 /// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide
 /// (for each effort).
 const SKETCH: usize = 60;
-const COARSE: usize = 160;
+const COARSE: [usize; 2] = [160, 128];
 const MIDDLE: [usize; 3] = [200, 240, 400];
 const FINE: [usize; 3] = [400, 600, 2000];
 /// Neighbourhoods by which frames are found (for each effort).
@@ -113,7 +113,7 @@ impl Normalised {
         Ok(Self {
             placement,
             sketch: all.sample(&places, SKETCH),
-            coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE),
+            coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE[usize::from(!places.is_empty())]),
             middle: all.sample(&places, MIDDLE[effort as usize]),
             fine: fine.sample(&places, total),
             frames: frames(&start, &terms, LOOKED_AT[effort as usize]),

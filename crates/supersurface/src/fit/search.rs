@@ -27,6 +27,8 @@ const SKETCHED: usize = 16;
 const MANY: usize = 36;
 /// Nats a point by which a start that is farther behind the best is left.
 const FAR: f64 = 0.2;
+/// A step that promises less than this many nats is not made while bodies are ranked.
+const ROUGH: f64 = 0.02;
 /// Starts that are kept though half of them are fewer.
 const LEAST_KEPT: usize = 6;
 /// Noise, in normalised lengths, below which a body is the one that was looked for.
@@ -239,5 +241,5 @@ fn coarse_schedule(h: &Hypothesis, rounds: usize, rays: usize) -> Schedule {
 }
 
 pub(super) fn schedule(rounds: usize, rays: usize, scale: f64) -> Schedule {
-    Schedule { rounds, rays, scale, leash: f64::INFINITY, along_rays: false, tolerance: 0.005 }
+    Schedule { rounds, rays, scale, leash: f64::INFINITY, along_rays: false, tolerance: ROUGH }
 }
