@@ -12,10 +12,11 @@ use crate::{Point, Vector};
 
 /// Fewer points than this determine no surface.
 const LEAST_POINTS: usize = 12;
-/// Points that sort out the starts of single views, that rank starts, that refine the best of them, and that decide
-/// (for each effort).
+/// Points that sort out the starts of single views, that rank starts (the many of a view that is looked at thoroughly by
+/// fewer), that refine the best of them, and that decide (for each effort).
 const SKETCH: usize = 60;
-const COARSE: [usize; 2] = [160, 128];
+const COARSE: usize = 160;
+const COARSE_VIEW: usize = 128;
 const MIDDLE: [usize; 3] = [200, 240, 400];
 const FINE: [usize; 3] = [400, 600, 2000];
 /// Neighbourhoods by which frames are found (for each effort).
@@ -107,13 +108,14 @@ impl Normalised {
         });
         let eyes: Vec<Eye> = eyes.collect();
         let (start, start_by) = fine.chosen(start.iter().copied());
+        let coarse = if parts.is_some() { COARSE_VIEW } else { COARSE };
         let seen = if parted { box_sides(&start) } else { sides };
         let reach = 0.55 * seen.max().max(tallest);
         let terms = Terms { support, eyes, sight, reach };
         Ok(Self {
             placement,
             sketch: all.sample(&places, SKETCH),
-            coarse: Seen { points: &start, by: &start_by }.sample(&places, COARSE[usize::from(!places.is_empty())]),
+            coarse: Seen { points: &start, by: &start_by }.sample(&places, coarse),
             middle: all.sample(&places, MIDDLE[effort as usize]),
             fine: fine.sample(&places, total),
             frames: frames(&start, &terms, LOOKED_AT[effort as usize]),
