@@ -10,7 +10,6 @@ use super::smeared::smeared_cost;
 use super::solver::{Hypothesis, Schedule, Workspace, refine};
 use super::terms::{Sight, Terms};
 use crate::Vector;
-use crate::numeric::lanes::Lane;
 
 /// Lines of sight that are looked at beside the fine set of points.
 const RAYS: usize = 48;
@@ -22,7 +21,7 @@ pub(super) const PRECISE: f64 = 1e-3;
 const SETTLED: f64 = 0.005;
 /// What such points leave to gain, in nats.
 const END: f64 = 3e-7;
-/// Rounds of the others that are compared, and the nats below which a gain ends them.
+/// Rounds of the others that are compared, and the nats below which a promise ends them.
 const ROUGHLY: usize = 6;
 const ROUGH: f64 = 0.15;
 /// Noise, in normalised lengths, from which its bias is taken back, and from which distances do not choose among bodies.
@@ -80,9 +79,7 @@ pub(super) fn finish(cloud: &Normalised, terms: &Terms, pool: &[Hypothesis]) -> 
         (fitted, corrected(&fitted).cost)
     });
     match roughly.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((fitted, cost)) if cost < unbiased.cost => {
-            corrected(&polished(cloud, terms, &settled(&fitted, work)))
-        }
+        Some((fitted, cost)) if cost < unbiased.cost => corrected(&settled(&fitted, work)),
         _ => unbiased,
     }
 }
@@ -92,17 +89,18 @@ fn polished(cloud: &Normalised, terms: &Terms, h: &Hypothesis) -> Hypothesis {
     if h.mixture.scale > PRECISE {
         return *h;
     }
-    let last = Schedule { tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
+    let along_rays = terms.sight == Sight::OneSide;
+    let last = Schedule { along_rays, tolerance: END, ..schedule(ROUNDS, RAYS, 0.0) };
     refine(h, &cloud.exact(), terms, &last, &mut Workspace::default())
 }
 
 /// A hypothesis refined by residuals along the rays in which some points were seen.
-fn along_rays<L: Lane>(
+fn along_rays(
     h: &Hypothesis,
-    points: &Sample<L>,
+    points: &Sample<f32>,
     terms: &Terms,
     tolerance: f64,
-    work: &mut Workspace<L>,
+    work: &mut Workspace<f32>,
 ) -> Hypothesis {
     let last = Schedule { along_rays: true, tolerance, ..schedule(ROUNDS, RAYS, h.mixture.scale) };
     refine(h, points, terms, &last, work)

@@ -28,7 +28,7 @@ pub(super) struct Hypothesis {
 /// Why the iteration of a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// A round gained nothing that counts.
+    /// No step promised a gain that counts.
     Converged,
     /// No step lowered the cost any more: rounding or a kink of the surface.
     Stuck,
