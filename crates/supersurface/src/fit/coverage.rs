@@ -92,3 +92,25 @@ impl Job for Found<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_counted_about_places() {
+        let mut random = Stream::new(9, 0);
+        let mut places = |n: usize| -> Vec<Vector> {
+            (0..n).map(|_| Vector::from_fn(|_, _| random.normal())).collect()
+        };
+        let (points, probes) = (places(333), places(20));
+        let sample = Sample::<f32>::new(points.iter().copied());
+        let (square, due) = (0.5, 12.0);
+        let mut out = 0.0;
+        dispatch(Found { points: sample.columns(), probes: &probes, square, due, out: &mut out });
+        let near =
+            |probe: &Vector| points.iter().filter(|p| (*p - probe).norm_squared() < square).count();
+        let known: f64 = probes.iter().map(|p| (near(p) as f64 / due).min(1.0)).sum();
+        assert!(known > 1.0 && (out - known).abs() < 1e-6, "{out} {known}");
+    }
+}

@@ -179,3 +179,54 @@ impl<'a> Around<'a> {
         (low < high).then_some((low, high))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::parameters::Family;
+
+    fn deepest<L: Lane>(s: &Parameters, ends: &[Vector]) -> Vec<Vector> {
+        let mut found = Vec::new();
+        Rays::<L>::default().deepest(s, &Vector::new(0.0, 0.0, -8.0), ends.iter(), &mut found);
+        found
+    }
+
+    #[test]
+    fn lines_lie_deepest_next_to_the_middle_of_a_ball() {
+        let ball = Parameters::ball(Family::Superellipsoid);
+        let size = ball.half_extents()[0];
+        let ends: Vec<Vector> =
+            (0..40).map(|i| Vector::new(0.1 * f64::from(i) * size, 0.0, 8.0)).collect();
+        let from = Vector::new(0.0, 0.0, -8.0);
+        let nearest = |end: &Vector| {
+            from - (end - from) * (from.dot(&(end - from)) / (end - from).norm_squared())
+        };
+        let known: Vec<Vector> =
+            ends.iter().map(nearest).filter(|p| p.norm() < 0.99 * size).collect();
+        for found in [deepest::<f64>(&ball, &ends), deepest::<f32>(&ball, &ends)] {
+            assert!(found.len() == known.len() || found.len() == known.len() + 1);
+            for (p, q) in found.iter().zip(&known) {
+                assert!(p.norm() < q.norm() + 0.05 * size, "{p} instead of {q}");
+            }
+        }
+    }
+
+    /// Through the near wall, the hole and the far wall.
+    #[test]
+    fn of_the_two_walls_of_a_ring_one_is_found() {
+        let ring = Parameters { ring: 3.0, ..Parameters::ball(Family::Supertoroid) };
+        let tube = ring.half_extents()[2];
+        let across = [Vector::new(0.0, 0.0, 8.0), Vector::new(3.0 * tube, 0.0, 8.0)];
+        let turned = Parameters {
+            rotation: nalgebra::Rotation3::new(Vector::x() * std::f64::consts::FRAC_PI_2),
+            ..ring
+        };
+        // along the axis nothing is met; from the side a wall's middle is
+        assert!(deepest::<f32>(&ring, &across[..1]).is_empty());
+        let found = deepest::<f32>(&turned, &across[..1]);
+        assert!(
+            found.len() == 1 && (found[0].z.abs() - 3.0 * tube).abs() < 0.4 * tube,
+            "{found:?}"
+        );
+    }
+}
