@@ -216,14 +216,14 @@ mod tests {
     fn of_the_two_walls_of_a_ring_one_is_found() {
         let ring = Parameters { ring: 3.0, ..Parameters::ball(Family::Supertoroid) };
         let tube = ring.half_extents()[2];
-        let across = [Vector::new(0.0, 0.0, 8.0), Vector::new(3.0 * tube, 0.0, 8.0)];
+        let across = [Vector::new(0.0, 0.0, 8.0)];
         let turned = Parameters {
             rotation: nalgebra::Rotation3::new(Vector::x() * std::f64::consts::FRAC_PI_2),
             ..ring
         };
         // along the axis nothing is met; from the side a wall's middle is
-        assert!(deepest::<f32>(&ring, &across[..1]).is_empty());
-        let found = deepest::<f32>(&turned, &across[..1]);
+        assert!(deepest::<f32>(&ring, &across).is_empty());
+        let found = deepest::<f32>(&turned, &across);
         assert!(
             found.len() == 1 && (found[0].z.abs() - 3.0 * tube).abs() < 0.4 * tube,
             "{found:?}"

@@ -175,8 +175,11 @@ fn switch(
         let few = &cloud.coarse;
         // where noise does not blur what sets them apart, few points tell those that are far behind
         let clear = terms.sight != Sight::OneSide && best.mixture.scale < BLURRED;
-        let limit = refine(&best, few, terms, &schedule(0, 0, best.mixture.scale), work).cost
-            + FAR * few.len() as f64;
+        let here = schedule(0, 0, best.mixture.scale);
+        let limit = match clear {
+            true => refine(&best, few, terms, &here, work).cost + FAR * few.len() as f64,
+            false => f64::INFINITY,
+        };
         for relative in relatives(&best.parameters, terms.only_eye()) {
             let start = Hypothesis { parameters: relative, ..best };
             let scale = (2.0 * best.mixture.scale).max(SHAKEN);
@@ -198,8 +201,8 @@ fn keep(ranked: &mut Vec<Hypothesis>, kept: usize, points: usize) {
     ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     ranked.dedup_by(|b, a| is_same(a, b));
     ranked.truncate(kept);
-    let least = ranked.first().map_or(0.0, |h| h.cost) + FAR * points as f64;
-    ranked.retain(|h| h.cost < least);
+    let most = ranked.first().map_or(0.0, |h| h.cost) + FAR * points as f64;
+    ranked.retain(|h| h.cost <= most);
 }
 
 fn turned_by_half(h: &Hypothesis) -> Option<Hypothesis> {
