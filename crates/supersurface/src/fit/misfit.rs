@@ -33,13 +33,14 @@ pub(super) fn correlation(cloud: &Normalised, h: &Hypothesis) -> f64 {
         .collect();
     // noise lies outside of a convex body on the average
     let mean = on.iter().map(|q| q.1).sum::<f64>() / on.len().max(1) as f64;
-    let mut neighbours = Neighbours::among(on.iter().map(|q| q.0));
+    let places: Vec<Vector> = on.iter().map(|q| q.0).collect();
+    let mut neighbours = Neighbours::among(&places);
     let (mut product, mut square) = (0.0, 1e-300);
     for (p, d) in on.iter().step_by(on.len().div_ceil(PROBED).max(1)) {
         // not the point itself
-        let others = neighbours.nearest(p, LOOKED_AT).iter().filter(|n| n.0 > 0.0);
-        if let Some((_, nearest)) = others.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            product += (d - mean) * (on[*nearest as usize].1 - mean);
+        let others = neighbours.nearest(p, LOOKED_AT).iter().filter(|n| n.square() > 0.0);
+        if let Some(nearest) = others.min() {
+            product += (d - mean) * (on[nearest.place()].1 - mean);
             square += (d - mean) * (d - mean);
         }
     }

@@ -31,16 +31,17 @@ pub(super) fn patches(points: &[Vector], looked_at: usize) -> Vec<Patch> {
     }
     let stride = points.len().div_ceil(AMONG);
     let among: Vec<Vector> = points.iter().step_by(stride).copied().collect();
-    let mut neighbours = Neighbours::among(among.iter().copied());
+    let mut neighbours = Neighbours::among(&among);
     let stride = points.len().div_ceil(looked_at);
     let mut found = Vec::with_capacity(looked_at);
     for p in points.iter().step_by(stride) {
         let near = neighbours.nearest(p, NEIGHBOURS + 1);
-        let Some((square, _)) = near.last() else { continue };
-        let scatter = scatter(near.iter().map(|n| &among[n.1 as usize]));
+        let Some(last) = near.last() else { continue };
+        let radius = last.square().sqrt();
+        let scatter = scatter(near.iter().map(|n| &among[n.place()]));
         let ([least, ..], normal) = least_axis(&scatter);
         let share = least / scatter.trace().max(1e-300);
-        found.push(Patch { point: *p, normal, flatness: 1.0 - 3.0 * share, radius: square.sqrt() });
+        found.push(Patch { point: *p, normal, flatness: 1.0 - 3.0 * share, radius });
     }
     found
 }

@@ -28,7 +28,7 @@ const CRUMB: f64 = 0.02;
 pub(super) fn pieces(points: &[Vector]) -> Pieces {
     let all = || (0..points.len()).collect();
     let whole = || Pieces { largest: all(), coherent: all() };
-    let mut neighbours = Neighbours::among(points.iter().copied());
+    let mut neighbours = Neighbours::among(points);
     let radius = REACH * spacing(points, &mut neighbours);
     if !(radius > 0.0 && radius.is_finite()) {
         return whole();
@@ -47,7 +47,7 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
             if found.len() <= NEIGHBOURS {
                 continue;
             }
-            for j in found.iter().map(|(_, j)| *j as usize) {
+            for j in found.iter().map(|near| near.place()) {
                 if piece[j] == usize::MAX {
                     piece[j] = sizes.len();
                     size += 1;
@@ -73,7 +73,8 @@ pub(super) fn pieces(points: &[Vector]) -> Pieces {
 fn spacing(points: &[Vector], neighbours: &mut Neighbours) -> f64 {
     let stride = points.len().div_ceil(MEASURED).max(1);
     // the point itself is the first
-    let mut sixth = |p| neighbours.nearest(p, NEIGHBOURS + 2).last().map_or(0.0, |n| n.0.sqrt());
+    let mut sixth =
+        |p| neighbours.nearest(p, NEIGHBOURS + 2).last().map_or(0.0, |n| n.square().sqrt());
     let mut all: Vec<f64> = points.iter().step_by(stride).map(&mut sixth).collect();
     quantile(&mut all, 0.5)
 }
