@@ -232,7 +232,8 @@ mod tests {
             assert!(near.iter().any(|n| points[n.place()] == *p));
             let off = near[4].square() / squares[4] - 1.0;
             assert!(near.len() == 5 && off.abs() < 1e-5, "{off}");
-            assert_eq!(neighbours.within(p, squares[9]).len(), 9);
+            let between = 0.5 * (squares[8] + squares[9]);
+            assert_eq!(neighbours.within(p, between).len(), 9);
         }
         assert_eq!(neighbours.nearest(&points[0], 999).len(), 301);
         let mut same = Neighbours::among(&[Vector::zeros(); 9]);

@@ -34,6 +34,8 @@ pub(super) const NEIGHBOURHOODS: usize = 320;
 const LEAST_PATCHES: usize = 8;
 /// Two frames whose axes agree within this cosine are one.
 const SAME_AXIS: f64 = 0.985;
+/// How far two starts may be apart, in place or in size as a ratio, that are one.
+const ALIKE: f64 = 0.1;
 
 /// All starts of a family in the frames of a cloud; rings with these shares of the widest hole.
 pub(super) fn starts(
@@ -217,7 +219,15 @@ impl Extents {
                 ..Parameters::ball(family)
             };
             if family.is_ring() {
-                out.extend(holes.iter().map(|hole| ringed(&start, axes, &frame.points, *hole)));
+                for hole in holes {
+                    let start = ringed(&start, axes, &frame.points, *hole);
+                    if !out.iter().any(|known| is_alike(known, &start)) {
+                        out.push(start);
+                    }
+                }
+                continue;
+            }
+            if out.iter().any(|known| is_alike(known, &start)) {
                 continue;
             }
             let square = axes[0].max(axes[1]) < 1.5 * axes[0].min(axes[1]);
@@ -226,6 +236,22 @@ impl Extents {
             }
         }
     }
+}
+
+/// True for starts, without their deformations, of which one leads where the other does.
+fn is_alike(a: &Parameters, b: &Parameters) -> bool {
+    let near = |i: usize, j: usize| (a.log_axes[i] - b.log_axes[j]).abs() < ALIKE;
+    let along = |i: usize, j: usize| {
+        let axes = [a.rotation.matrix().column(i), b.rotation.matrix().column(j)];
+        axes[0].dot(&axes[1]).abs() > SAME_AXIS
+    };
+    // the first two axes may have changed places
+    let across = |[i, j]: [usize; 2]| near(0, i) && near(1, j) && along(0, i);
+    near(2, 2)
+        && (a.position - b.position).norm() < ALIKE
+        && (a.ring / b.ring).ln().abs() < ALIKE
+        && along(2, 2)
+        && (across([0, 1]) || across([1, 0]))
 }
 
 /// The start with the deformations from which its family is searched: four ways to bend, two to twist; a taper is
