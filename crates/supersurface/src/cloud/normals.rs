@@ -63,13 +63,17 @@ impl Neighbourhood {
         if self.count < 6.0 {
             return None;
         }
+        let normal = smallest_axis(&self.covariance())?;
+        Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
+    }
+
+    /// The covariance of the points.
+    pub(crate) fn covariance(&self) -> Matrix3<f64> {
         let mean = self.sum.map(|s| s / self.count);
-        let covariance = Matrix3::from_fn(|i, j| {
+        Matrix3::from_fn(|i, j| {
             let product = if i == j { self.square[i] } else { self.mixed[3 - i - j] };
             product / self.count - mean[i] * mean[j]
-        });
-        let normal = smallest_axis(&covariance)?;
-        Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
+        })
     }
 }
 

@@ -1,11 +1,11 @@
 //! The neighbourhoods of points: how flat, how dense, which way they face. Surfaces are flat and dense; outliers are
 //! not.
 
-use super::centred::scatter;
 use super::neighbours::Neighbours;
 use super::start::quantile;
 use crate::Vector;
-use crate::numeric::symmetric::least_axis;
+use crate::cloud::Neighbourhood;
+use crate::numeric::symmetric::least_axes;
 
 /// Neighbours that make a neighbourhood.
 const NEIGHBOURS: usize = 12;
@@ -33,15 +33,20 @@ pub(super) fn patches(points: &[Vector], looked_at: usize) -> Vec<Patch> {
     let among: Vec<Vector> = points.iter().step_by(stride).copied().collect();
     let mut neighbours = Neighbours::among(&among);
     let stride = points.len().div_ceil(looked_at);
-    let mut found = Vec::with_capacity(looked_at);
-    for p in points.iter().step_by(stride) {
+    let places = points.iter().step_by(stride);
+    let (mut radii, mut scatters) = (Vec::with_capacity(looked_at), Vec::with_capacity(looked_at));
+    for p in places.clone() {
         let near = neighbours.nearest(p, NEIGHBOURS + 1);
-        let Some(last) = near.last() else { continue };
-        let radius = last.square().sqrt();
-        let scatter = scatter(near.iter().map(|n| &among[n.place()]));
-        let ([least, ..], normal) = least_axis(&scatter);
+        radii.push(near.last().map_or(0.0, |n| n.square().sqrt()));
+        let mut about = Neighbourhood::default();
+        near.iter().for_each(|n| about.add(&(among[n.place()] - p)));
+        scatters.push(about.covariance());
+    }
+    let mut found = Vec::with_capacity(looked_at);
+    let each = places.zip(radii).zip(&scatters).zip(least_axes(&scatters));
+    for (((point, radius), scatter), ([least, ..], normal)) in each {
         let share = least / scatter.trace().max(1e-300);
-        found.push(Patch { point: *p, normal, flatness: 1.0 - 3.0 * share, radius });
+        found.push(Patch { point: *point, normal, flatness: 1.0 - 3.0 * share, radius });
     }
     found
 }
