@@ -123,14 +123,12 @@ fn sums<L: Lane>(cloud: &Normalised, h: &Hypothesis, points: &Sample<L>) -> [Nor
     }
     let mut weights = Column::default();
     h.mixture.weigh(&at.distances, points.len(), &mut weights);
-    let padded = |by: &dyn Fn(L, L) -> L| -> Column<L> {
-        let pairs = at.distances.iter().zip(&weights).enumerate();
-        pairs.map(|(i, (d, w))| if i < points.len() { by(*d, *w) } else { L::of(0.0) }).collect()
-    };
-    let curvatures = padded(&|d, _| L::of(h.mixture.curvature(d.wide())));
-    let squares = padded(&|d, w| (w * d) * (w * d));
+    let mut curvatures = h.mixture.curvatures(&at.distances);
+    curvatures[points.len()..].fill(L::of(0.0));
+    let square = |(d, w): (&L, &L)| (*w * *d) * (*w * *d);
+    let squares: Vec<L> = at.distances.iter().zip(&weights).map(square).collect();
     let mut buffer = Vec::new();
-    [&curvatures, &squares, &weights].map(|w| Normal::of_points(s.family, &at, w, &mut buffer))
+    [&curvatures[..], &squares, &weights].map(|w| Normal::of_points(s.family, &at, w, &mut buffer))
 }
 
 /// What a step of 1 in the solver's coordinates is in the units of the result.

@@ -2,13 +2,15 @@
 
 use nalgebra::Isometry3;
 
-use super::columns::distances;
+use super::columns::{Evaluation, Sample};
 use super::covariance::covariance;
+use super::finish::PRECISE;
 use super::prepare::Normalised;
 use super::solver::Hypothesis;
 use super::start::quantile;
 use super::{Fit, FitError, View};
-use crate::Point;
+use crate::numeric::lanes::Lane;
+use crate::{Point, Vector};
 
 /// A fit with a lesser share of inliers explains nothing.
 const LEAST_SHARE: f64 = 0.1;
@@ -24,16 +26,18 @@ pub(super) fn judge(
     let (s, placement) = (&h.parameters, &cloud.placement);
     let all = || views.iter().flat_map(|view| view.points.iter().map(move |p| (view, p)));
     let counted = all().filter(|(view, p)| view.counts(p)).map(|(_, p)| placement.inward(p));
-    let mut distances = distances(s, counted);
-    let mut next = distances.iter();
+    let (mut distances, belonging) = match h.mixture.scale < PRECISE {
+        true => judged::<f64>(h, counted),
+        false => judged::<f32>(h, counted),
+    };
+    let mut next = belonging.into_iter();
     let mut judge = |(view, p): (&View<'_>, &Point)| {
-        let d = if view.counts(p) { next.next() } else { None };
-        d.map_or(0.0, |d| h.mixture.belongs(*d) as f32)
+        let own = if view.counts(p) { next.next() } else { None };
+        own.unwrap_or(0.0)
     };
     let probabilities: Vec<f32> = all().map(&mut judge).collect();
     let inliers: Vec<bool> = probabilities.iter().map(|p| *p > 0.5).collect();
     let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
-    distances.iter_mut().for_each(|d| *d = d.abs());
     if share.is_nan() || share < LEAST_SHARE {
         return Err(FitError::NoAgreement { share });
     }
@@ -50,4 +54,15 @@ pub(super) fn judge(
         iterations: h.rounds,
         stopped: h.stopped,
     })
+}
+
+/// Magnitudes of the first-order distances of points in normalised coordinates, and their probabilities of belonging.
+fn judged<L: Lane>(h: &Hypothesis, points: impl Iterator<Item = Vector>) -> (Vec<f64>, Vec<f32>) {
+    let sample = Sample::<L>::new(points);
+    let mut at = Evaluation::default();
+    at.fill_distances(&h.parameters, &sample);
+    let distances = &at.distances[..sample.len()];
+    let belonging = h.mixture.belonging(distances);
+    let distances = distances.iter().map(|d| d.wide().abs()).collect();
+    (distances, belonging.into_iter().map(|p| p.wide() as f32).collect())
 }

@@ -58,7 +58,8 @@ pub(super) struct Neighbours {
     /// The axes of the grid.
     axes: [usize; 2],
     low: [f64; 2],
-    cell: f64,
+    /// Cells a unit of length.
+    fineness: f64,
     counts: [usize; 2],
     near: Vec<Neighbour>,
 }
@@ -74,8 +75,8 @@ impl Neighbours {
         let axes = [(thinnest + 1) % 3, (thinnest + 2) % 3];
         let [a, b] = axes.map(|k| side[k]);
         let cell = (a * b * POINTS / points.len() as f64).sqrt().max(a.max(b) / MOST as f64);
-        let cell = if cell > 0.0 { cell } else { f64::INFINITY };
-        let counts = [a, b].map(|side| (side / cell) as usize + 1);
+        let fineness = if cell > 0.0 { cell.recip() } else { 0.0 };
+        let counts = [a, b].map(|side| (side * fineness) as usize + 1);
         let padded = points.len() + BLOCK;
         let mut out = Self {
             columns: Default::default(),
@@ -83,23 +84,20 @@ impl Neighbours {
             starts: vec![0; counts[0] * counts[1] + 1],
             axes,
             low: axes.map(|k| low[k]),
-            cell,
+            fineness,
             counts,
             near: vec![Neighbour(0); padded],
         };
         out.columns.iter_mut().for_each(|column| column.resize(padded, PADDING));
         // counted, then laid down from the end of each cell to its beginning
-        for p in points {
-            let cell = out.cell_of(p);
-            out.starts[cell] += 1;
-        }
+        let cells: Vec<usize> = points.iter().map(|p| out.cell_of(p)).collect();
+        cells.iter().for_each(|cell| out.starts[*cell] += 1);
         let mut sum = 0;
         for start in &mut out.starts {
             sum += *start;
             *start = sum;
         }
-        for (i, p) in points.iter().enumerate().rev() {
-            let cell = out.cell_of(p);
+        for (i, (p, cell)) in points.iter().zip(cells).enumerate().rev() {
             out.starts[cell] -= 1;
             let at = out.starts[cell] as usize;
             out.places[at] = i as u32;
@@ -115,7 +113,7 @@ impl Neighbours {
 
     /// The cell along an axis of the grid, the nearest one for places outside.
     fn along(&self, k: usize, x: f64) -> usize {
-        (((x - self.low[k]) / self.cell) as usize).min(self.counts[k] - 1)
+        (((x - self.low[k]) * self.fineness) as usize).min(self.counts[k] - 1)
     }
 
     /// The nearest to a place, `count` of them or all there are, the last of them the farthest, the others in no order.
@@ -141,7 +139,7 @@ impl Neighbours {
         let many =
             |from: usize, to: usize| f64::from(self.starts[row + to] - self.starts[row + from]);
         let beside = many(a.saturating_sub(1), (a + 2).min(self.counts[0])) / 3.0;
-        let density = many(a, a + 1).max(beside).max(0.5) / (self.cell * self.cell);
+        let density = many(a, a + 1).max(beside).max(0.5) * self.fineness * self.fineness;
         count / (PI * density)
     }
 

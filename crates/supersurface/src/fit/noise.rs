@@ -78,7 +78,7 @@ impl Mixture {
 
     /// What up to [`TOGETHER`] distances say.
     #[inline(always)]
-    fn shares<const FUSED: bool, L: Lane>(&self, distances: &[L], each: &mut Each<L>) {
+    fn shares<const FUSED: bool, L: Lane>(&self, distances: &[L], each: &mut Together<L>) {
         let precision = L::of(1.0 / (self.scale * self.scale));
         let n = distances.len();
         let (belonging, spread) = (&mut each.belonging[..n], &mut each.spread[..n]);
@@ -98,23 +98,31 @@ impl Mixture {
         share.belongs * share.weight / (self.scale * self.scale)
     }
 
-    /// Second derivative of the negative log-likelihood of one distance, in 1/length²: below the weight where the law is
+    /// Second derivatives of the negative log-likelihoods of distances, in 1/length²: below the weight where the law is
     /// wider than a Gaussian, negative for outliers.
-    pub(super) fn curvature(&self, d: f64) -> f64 {
-        let Share { belongs, weight, .. } = self.share::<false, f64>(d);
-        let precision = 1.0 / (self.scale * self.scale);
-        let slope = weight * d * precision;
-        let within = match self.law {
-            Law::Gaussian => 1.0,
-            Law::StudentT => weight * (1.5 * weight - 1.0),
-        };
-        belongs * (within * precision - (1.0 - belongs) * slope * slope)
+    pub(super) fn curvatures<L: Lane>(&self, distances: &[L]) -> Vec<L> {
+        let mut out = vec![L::of(0.0); distances.len()];
+        dispatch(Each::<true, L> { mixture: self, distances, out: &mut out });
+        out
     }
 
-    /// Probability that a point at distance `d` belongs to the surface.
-    #[inline]
-    pub(super) fn belongs(&self, d: f64) -> f64 {
-        self.share::<false, f64>(d).belongs
+    /// Probabilities that points at some distances belong to the surface.
+    pub(super) fn belonging<L: Lane>(&self, distances: &[L]) -> Vec<L> {
+        let mut out = vec![L::of(0.0); distances.len()];
+        dispatch(Each::<false, L> { mixture: self, distances, out: &mut out });
+        out
+    }
+
+    #[inline(always)]
+    fn curvature<const FUSED: bool, L: Lane>(&self, d: L) -> L {
+        let Share { belongs, weight, .. } = self.share::<FUSED, L>(d);
+        let (one, precision) = (L::of(1.0), L::of(1.0 / (self.scale * self.scale)));
+        let slope = weight * d * precision;
+        let within = match self.law {
+            Law::Gaussian => one,
+            Law::StudentT => weight * (L::of(1.5) * weight - one),
+        };
+        belongs * (within * precision - (one - belongs) * slope * slope)
     }
 
     /// By how much the cost rises when a point at distance `d` is an outlier after all.
@@ -122,22 +130,26 @@ impl Mixture {
         (self.share::<false, f64>(d).density / (self.outliers * self.density)).ln()
     }
 
-    /// Weights of squared distances in the equivalent least squares problem, in 1/length², and the negative
-    /// log-likelihood of the first `count` distances, which are padded to a multiple of [`Lane::WIDTH`]; padding weighs
-    /// nothing.
+    /// Weights of squared distances in the equivalent least squares problem, in 1/length², and what the first `count`
+    /// distances add up to, which are padded to a multiple of [`Lane::WIDTH`]; padding weighs nothing.
     pub(super) fn weigh<L: Lane>(
         &self,
         distances: &[L],
         count: usize,
         weights: &mut Column<L>,
-    ) -> f64 {
+    ) -> Tally {
         weights.resize(distances.len(), L::of(0.0));
-        self.sums::<true, true, L>(distances, count, weights).cost
+        self.sums::<true, true, L>(distances, count, weights)
+    }
+
+    /// What the first `count` distances add up to, padded as for [`Self::weigh`].
+    pub(super) fn tally<L: Lane>(&self, distances: &[L], count: usize) -> Tally {
+        self.sums::<true, false, L>(distances, count, &mut [])
     }
 
     /// Negative log-likelihood of the first `count` distances, padded as for [`Self::weigh`].
     pub(super) fn cost<L: Lane>(&self, distances: &[L], count: usize) -> f64 {
-        self.sums::<true, false, L>(distances, count, &mut []).cost
+        self.tally(distances, count).cost
     }
 
     /// `rounds` of expectation maximisation of scale (within limits) and outlier share by the first `count`
@@ -146,18 +158,21 @@ impl Mixture {
         &mut self,
         distances: &[L],
         count: usize,
-        [low, high]: [f64; 2],
+        limits: [f64; 2],
         rounds: usize,
     ) {
-        let n = count as f64;
         for _ in 0..rounds {
-            let Sums { belonging, spread, .. } =
-                self.sums::<false, false, L>(distances, count, &mut []);
-            let belonging = belonging + 1e-9;
-            let most = high.min(self.law.largest_scale());
-            self.scale = (spread / belonging).sqrt().min(most).max(low);
-            self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);
+            let tally = self.sums::<false, false, L>(distances, count, &mut []);
+            self.follow(&tally, count, limits);
         }
+    }
+
+    /// The same by what `count` distances added up to.
+    pub(super) fn follow(&mut self, tally: &Tally, count: usize, [low, high]: [f64; 2]) {
+        let (n, belonging) = (count as f64, tally.belonging + 1e-9);
+        let most = high.min(self.law.largest_scale());
+        self.scale = (tally.spread / belonging).sqrt().min(most).max(low);
+        self.outliers = ((n - belonging + 0.5) / (n + 10.0)).clamp(1e-4, 0.9);
     }
 
     fn sums<const COST: bool, const WEIGHTS: bool, L: Lane>(
@@ -165,23 +180,42 @@ impl Mixture {
         distances: &[L],
         count: usize,
         weights: &mut [L],
-    ) -> Sums {
-        let mut sums = Sums::default();
-        let out = &mut sums;
+    ) -> Tally {
+        let mut tally = Tally::default();
+        let out = &mut tally;
         dispatch(Weigh::<COST, WEIGHTS, L> { mixture: self, distances, count, weights, out });
-        sums
+        tally
+    }
+}
+
+/// What each distance says: the curvature, or the probability of belonging.
+struct Each<'a, const CURVATURE: bool, L> {
+    mixture: &'a Mixture,
+    distances: &'a [L],
+    out: &'a mut [L],
+}
+
+impl<const CURVATURE: bool, L: Lane> Job for Each<'_, CURVATURE, L> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        for (d, out) in self.distances.iter().zip(self.out) {
+            *out = match CURVATURE {
+                true => self.mixture.curvature::<FUSED, L>(*d),
+                false => self.mixture.share::<FUSED, L>(*d).belongs,
+            };
+        }
     }
 }
 
 /// Sums over all distances.
-#[derive(Clone, Copy, Default)]
-struct Sums {
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
     /// Probabilities of belonging.
     belonging: f64,
     /// Squared distances that belong, with their weights.
     spread: f64,
     /// Negative log-likelihood; zero where it is not asked for.
-    cost: f64,
+    pub(super) cost: f64,
 }
 
 /// One pass over distances, of which only the first count, for the likelihood and the weights where these are asked for.
@@ -190,7 +224,7 @@ struct Weigh<'a, const COST: bool, const WEIGHTS: bool, L> {
     distances: &'a [L],
     count: usize,
     weights: &'a mut [L],
-    out: &'a mut Sums,
+    out: &'a mut Tally,
 }
 
 /// Least probability of belonging to the surface that is not none.
@@ -200,7 +234,7 @@ const LEAST_SHARE: f64 = 1e-15;
 const TOGETHER: usize = 64;
 
 /// What distances that are looked at together add to the sums.
-struct Each<L> {
+struct Together<L> {
     belonging: [L; TOGETHER],
     spread: [L; TOGETHER],
     density: [L; TOGETHER],
@@ -212,7 +246,7 @@ impl<const COST: bool, const WEIGHTS: bool, L: Lane> Job for Weigh<'_, COST, WEI
     fn run<const FUSED: bool>(self) {
         let (zero, one) = (L::of(0.0), L::of(1.0));
         let none = [zero; TOGETHER];
-        let mut each = Each { belonging: none, spread: none, density: none, weight: none };
+        let mut each = Together { belonging: none, spread: none, density: none, weight: none };
         let mut lanes = [[zero; WIDEST]; 3];
         for (g, group) in self.distances.chunks(TOGETHER).enumerate() {
             let n = group.len();
@@ -242,7 +276,7 @@ impl<const COST: bool, const WEIGHTS: bool, L: Lane> Job for Weigh<'_, COST, WEI
             }
         }
         let [belonging, spread, cost] = lanes.map(|l| l.iter().map(|x| x.wide()).sum());
-        *self.out = Sums { belonging, spread, cost };
+        *self.out = Tally { belonging, spread, cost };
     }
 }
 
@@ -256,7 +290,7 @@ mod tests {
             let mixture = Mixture { law, scale: 0.1, outliers: 0.2, density: 0.5 };
             let d: Vec<f64> = (0..16).map(|i| 0.03 * i as f64 - 0.1).collect();
             let mut weights = Column::default();
-            let cost = mixture.weigh(&d, 13, &mut weights);
+            let Tally { cost, .. } = mixture.weigh(&d, 13, &mut weights);
             let expected: f64 =
                 d[..13].iter().map(|d| -mixture.share::<false, f64>(*d).density.ln()).sum();
             assert!((cost - expected).abs() < 1e-12 && weights[13..] == [0.0; 3]);
@@ -267,7 +301,8 @@ mod tests {
                 assert!((slope - w).abs() < 1e-4 * (1.0 + w), "{slope} {w}");
                 let slope = |d: f64| mixture.weight(d) * d;
                 let curvature = (slope(d + 1e-6) - slope(d - 1e-6)) / 2e-6;
-                assert!((curvature - mixture.curvature(*d)).abs() < 1e-4 * (1.0 + w));
+                let known = mixture.curvatures(&[*d])[0];
+                assert!((curvature - known).abs() < 1e-4 * (1.0 + w));
             }
         }
     }

@@ -65,8 +65,8 @@ pub(super) fn firmest(patches: &[Patch], share: f64) -> Vec<Patch> {
 
 fn best(patches: &[Patch], share: f64, merit: impl Fn(&Patch) -> f64) -> Vec<Patch> {
     let count = (share * patches.len() as f64).ceil() as usize;
-    let mut sorted = patches.to_vec();
-    sorted.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
-    sorted.truncate(count);
-    sorted
+    let mut ranked: Vec<(f64, usize)> = patches.iter().map(merit).zip(0..).collect();
+    let Some(last) = count.min(ranked.len()).checked_sub(1) else { return Vec::new() };
+    ranked.select_nth_unstable_by(last, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    ranked[..=last].iter().map(|(_, i)| patches[*i]).collect()
 }

@@ -1,7 +1,7 @@
 //! Damped least squares on the mixture's weights, with the noise annealed and re-estimated in each round.
 
 use super::columns::{Evaluation, Sample};
-use super::noise::Mixture;
+use super::noise::{Mixture, Tally};
 use super::normal::{Normal, Sum, Sums};
 use super::parameters::{Family, Parameters};
 use super::rays::Rays;
@@ -98,12 +98,11 @@ pub(super) struct Workspace<L = f64> {
 }
 
 impl<L: Lane> Workspace<L> {
-    /// The points' part of the normal equations at the present body.
-    fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> Normal {
-        let cost = mixture.weigh(&self.now.distances, points, &mut self.weights);
-        let mut normal = Normal::of_points(family, &self.now, &self.weights, &mut self.sums);
-        normal.cost = cost;
-        normal
+    /// The points' part of the normal equations at the present body, and what they add up to.
+    fn normal(&mut self, family: Family, mixture: &Mixture, points: usize) -> (Normal, Tally) {
+        let tally = mixture.weigh(&self.now.distances, points, &mut self.weights);
+        let normal = Normal::of_points(family, &self.now, &self.weights, &mut self.sums);
+        (Normal { cost: tally.cost, ..normal }, tally)
     }
 
     /// Adds what is known beside the points.
@@ -167,7 +166,7 @@ pub(super) fn refine<L: Lane>(
             work.look(&s, terms, schedule.rays);
             looked = true;
         }
-        let mut normal = work.normal(s.family, &mixture, n);
+        let (mut normal, mut tally) = work.normal(s.family, &mixture, n);
         work.add(terms, &s, counts, mixture.scale, &mut normal);
         let mut gained = false;
         for _ in 0..4 {
@@ -181,10 +180,11 @@ pub(super) fn refine<L: Lane>(
             }
             let next = s.stepped(&step);
             work.evaluate(&next, points, schedule);
-            let mut after = mixture.cost(&work.trial.distances, n);
+            let tried = mixture.tally(&work.trial.distances, n);
+            let mut after = tried.cost;
             work.add(terms, &next, counts, mixture.scale, &mut after);
             if after < normal.cost - LEAST_GAIN + rounding {
-                (s, gained, looked) = (next, true, false);
+                (s, tally, gained, looked) = (next, tried, true, false);
                 work.accept();
                 damping = (damping * 0.25).max(1e-7);
                 break;
@@ -194,8 +194,10 @@ pub(super) fn refine<L: Lane>(
         rounds += 1;
         let scale = mixture.scale;
         annealed *= DECAY;
+        let limits = schedule.limits(&s, annealed);
+        mixture.follow(&tally, n, limits);
         mixture.density = terms.outlier_density(&s);
-        mixture.update(&work.now.distances, n, schedule.limits(&s, annealed), 2);
+        mixture.update(&work.now.distances, n, limits, 1);
         failures = if gained { 0 } else { failures + 1 };
         settled = (mixture.scale / scale - 1.0).abs() < 2e-3 && annealed < mixture.scale;
         if failures >= 2 && annealed < mixture.scale {

@@ -287,10 +287,9 @@ impl Cloud {
         h: &Hypothesis<M>,
     ) -> Result<GenericFit, FitError> {
         let mut distances = h.body.distances(&self.centred.points);
-        let mut next = distances.iter();
-        let belongs = |p: &Point| {
-            is_finite(&p.coords) && next.next().is_some_and(|d| h.mixture.belongs(*d) > 0.5)
-        };
+        let mut next = h.mixture.belonging(&distances).into_iter();
+        let belongs =
+            |p: &Point| is_finite(&p.coords) && next.next().is_some_and(|share| share > 0.5);
         let inliers: Vec<bool> = points.iter().map(belongs).collect();
         let share = inliers.iter().filter(|i| **i).count() as f64 / distances.len() as f64;
         distances.iter_mut().for_each(|d| *d = d.abs());
