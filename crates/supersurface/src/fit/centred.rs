@@ -52,7 +52,9 @@ const GRID: f64 = (1u32 << 24) as f64;
 /// A coordinate on the grid. What a move, a turn or a change of units leaves in the last digits is gone there, so that a
 /// search takes the same way.
 pub(super) fn on_grid(x: f64) -> f64 {
-    (x * GRID).round() / GRID
+    // adding 1.5 2^52 rounds to an integer
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    (x * GRID + ROUND - ROUND) / GRID
 }
 
 /// A cloud with zero mean and unit root mean square, along its principal axes, on a grid.
@@ -144,6 +146,9 @@ pub(super) fn spread_over(n: usize, count: usize) -> impl Iterator<Item = usize>
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let taken = n.min(count);
     let stretch = n as f64 / taken.max(1) as f64;
-    let at = move |i: usize| ((i as f64 + (GOLDEN * i as f64).fract()) * stretch) as usize;
+    let at = move |i: usize| {
+        let turns = GOLDEN * i as f64;
+        ((i as f64 + (turns - (turns as usize) as f64)) * stretch) as usize
+    };
     (0..taken).map(move |i| at(i).min(n - 1))
 }

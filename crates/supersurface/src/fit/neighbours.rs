@@ -12,10 +12,10 @@ use crate::numeric::column::Column;
 use crate::numeric::lanes::{Job, Lane, dispatch};
 
 /// Points in a cell, were they spread over the grid.
-const POINTS: f64 = 4.0;
+const POINTS: f64 = 3.0;
 /// How many more than are wanted are looked for at first, as a ratio, and the ratio of the squared distances from one
 /// trial to the next.
-const AHEAD: f64 = 2.2;
+const AHEAD: f64 = 3.4;
 const FARTHER: f64 = 2.0;
 /// Most cells along an axis.
 const MOST: usize = 64;

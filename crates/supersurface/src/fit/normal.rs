@@ -90,13 +90,13 @@ impl Normal {
         }
         let (columns, distances) = (&columns[..n], &evaluation.distances[..]);
         sums.resize(n, [[L::of(0.0); WIDEST]; ROW]);
+        let mut totals = [[0.0; ROW]; FREE];
+        dispatch(Accumulate { columns, distances, weights, sums, totals: &mut totals });
         let mut normal = Self::zero();
-        dispatch(Accumulate { columns, distances, weights, sums });
-        for (j, i) in own[..n].iter().enumerate() {
-            let row = &sums[j];
-            normal.gradient[*i] = total(&row[0]);
+        for ((j, i), row) in own[..n].iter().enumerate().zip(&totals) {
+            normal.gradient[*i] = row[0];
             for (k, sum) in own[..=j].iter().zip(&row[1..]) {
-                normal.matrix[*i][*k] = total(sum);
+                normal.matrix[*i][*k] = *sum;
             }
         }
         normal
@@ -140,6 +140,7 @@ struct Accumulate<'a, L> {
     distances: &'a [L],
     weights: &'a [L],
     sums: &'a mut [Sums<L>],
+    totals: &'a mut [[f64; ROW]; FREE],
 }
 
 impl<L: Lane> Job for Accumulate<'_, L> {
@@ -161,6 +162,11 @@ impl<L: Lane> Job for Accumulate<'_, L> {
                         *sum = found;
                     }
                 }
+            }
+        }
+        for (j, (row, totals)) in self.sums.iter().zip(self.totals).enumerate() {
+            for (sum, total) in row[..j + 2].iter().zip(totals) {
+                *total = lane_sum(sum);
             }
         }
     }
@@ -196,7 +202,7 @@ fn products<const FUSED: bool, L: Lane>(
 
 /// Sum of a block, by halves.
 #[inline(always)]
-fn total<L: Lane>(lanes: &[L; WIDEST]) -> f64 {
+fn lane_sum<L: Lane>(lanes: &[L; WIDEST]) -> f64 {
     let mut sums = *lanes;
     let mut half = L::WIDTH / 2;
     while half > 0 {

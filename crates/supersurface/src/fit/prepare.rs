@@ -60,9 +60,11 @@ impl Normalised {
         let (placement, total) = (cloud.placement, points.len());
         let inward = |p: &Point| placement.inward(p).map(on_grid);
         let all = Seen { points: &cloud.points, by: &seen_by };
-        let (points, seen_by) = all.chosen(spread_over(total, FINE[effort as usize]));
-        let fine = Seen { points: &points, by: &seen_by };
-        let sides = box_sides(&points);
+        let most = FINE[effort as usize];
+        let thinned = (total > most).then(|| all.chosen(spread_over(total, most)));
+        let fine = thinned.as_ref().map_or(all, Seen::of);
+        let points = fine.points;
+        let sides = box_sides(points);
         // one sensor whose place is not known leaves open what any sees
         let place =
             |view: &View<'_>| view.viewpoint.as_ref().map(inward).filter(|p| p.norm() > 1.8);
@@ -87,40 +89,40 @@ impl Normalised {
         let sight = if places.is_empty() { Sight::AllAround { volume } } else { Sight::OneSide };
         // seen from one side, stray points and what lies beside the object lead starts astray
         let parts = match (sight, effort) {
-            (Sight::OneSide, Effort::Thorough) => Some(pieces(&points)),
+            (Sight::OneSide, Effort::Thorough) => Some(pieces(points)),
             _ => None,
         };
         let piece = parts.as_ref().map_or(&[][..], |p| &p.largest);
         let parted =
             piece.len() < (WHOLE * points.len() as f64) as usize && piece.len() > LEAST_POINTS;
-        let everything: Vec<usize> = (0..points.len()).collect();
-        let start = if parted { piece } else { &everything };
+        let largest = parted.then(|| fine.chosen(piece.iter().copied()));
+        let start = largest.as_ref().map_or(fine, Seen::of);
         let eyes = places.iter().enumerate().map(|(k, place)| {
-            let own = |among: &[usize]| -> Vec<Vector> {
-                among.iter().filter(|i| seen_by[**i] == k).map(|i| points[*i]).collect()
-            };
             let free = match &parts {
-                Some(parts) if views[k].free.is_empty() => outline(&own(&parts.coherent), place),
+                Some(parts) if views[k].free.is_empty() => {
+                    let (coherent, by) = fine.chosen(parts.coherent.iter().copied());
+                    let own: Vec<Vector> = Seen { points: &coherent, by: &by }.own(k).collect();
+                    outline(&own, place)
+                }
                 _ => views[k].free.iter().map(inward).collect(),
             };
             let nearer = |p: Vector| p - (p - place).normalize() * BEFORE;
-            Eye { place: *place, free, before: own(start).into_iter().map(nearer).collect() }
+            Eye { place: *place, free, before: start.own(k).map(nearer).collect() }
         });
         let eyes: Vec<Eye> = eyes.collect();
-        let (start, start_by) = fine.chosen(start.iter().copied());
         let coarse = if parts.is_some() { COARSE_VIEW } else { COARSE };
-        let seen = if parted { box_sides(&start) } else { sides };
+        let seen = if parted { box_sides(start.points) } else { sides };
         let reach = 0.55 * seen.max().max(tallest);
         let terms = Terms { support, eyes, sight, reach };
         Ok(Self {
             placement,
             sketch: all.sample(&places, SKETCH),
-            coarse: Seen { points: &start, by: &start_by }.sample(&places, coarse),
+            coarse: start.sample(&places, coarse),
             middle: all.sample(&places, MIDDLE[effort as usize]),
             fine: fine.sample(&places, total),
-            frames: frames(&start, &terms, LOOKED_AT[effort as usize]),
-            points,
-            seen_by,
+            frames: frames(start.points, &terms, LOOKED_AT[effort as usize]),
+            points: points.to_vec(),
+            seen_by: fine.by.to_vec(),
             terms,
             effort,
             total,
@@ -141,28 +143,37 @@ struct Seen<'a> {
     by: &'a [usize],
 }
 
-impl Seen<'_> {
+impl<'a> Seen<'a> {
+    fn of((points, by): &'a (Vec<Vector>, Vec<usize>)) -> Self {
+        Self { points, by }
+    }
+
+    /// What one view saw.
+    fn own(self, view: usize) -> impl Iterator<Item = Vector> + 'a {
+        self.points.iter().zip(self.by).filter(move |(_, k)| **k == view).map(|(p, _)| *p)
+    }
+
     fn chosen(&self, places: impl Iterator<Item = usize>) -> (Vec<Vector>, Vec<usize>) {
         places.map(|i| (self.points[i], self.by[i])).unzip()
     }
 
     /// About `count` of the points, seen from the given places of the sensors where these are known.
     fn sample<L: Lane>(&self, sensors: &[Vector], count: usize) -> Sample<L> {
-        let (points, by) = self.chosen(spread_over(self.points.len(), count));
+        let places = spread_over(self.points.len(), count);
         if sensors.is_empty() {
-            return Sample::new(points.into_iter());
+            return Sample::new(places.map(|i| self.points[i]));
         }
-        let away = |(p, k): (Vector, usize)| (p, (p - sensors[k]).normalize());
-        Sample::seen(points.into_iter().zip(by).map(away))
+        let away = |i: usize| (self.points[i] - sensors[self.by[i]]).normalize();
+        Sample::seen(places.map(|i| (self.points[i], away(i))))
     }
 }
 
 /// Sides of the points' box along their principal axes.
 fn box_sides(points: &[Vector]) -> Vector {
     let axes = axes_of(&scatter(points.iter()));
-    Vector::from_fn(|k, _| {
-        let along = || points.iter().map(|p| p.dot(&axes.column(k)));
-        let low = along().fold(f64::INFINITY, f64::min);
-        along().fold(f64::NEG_INFINITY, f64::max) - low
-    })
+    let (mut low, mut high) = (Vector::repeat(f64::INFINITY), Vector::repeat(-f64::INFINITY));
+    for p in points.iter().map(|p| axes.tr_mul(p)) {
+        (low, high) = (low.inf(&p), high.sup(&p));
+    }
+    high - low
 }
