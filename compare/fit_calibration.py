@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Measures whether the covariance of our fits is honest.
 
-    python compare/fit_calibration.py --supersurface target/release/supersurface DATA
+    python compare/fit_calibration.py --supersurface target/release/supersurface DATA ...
 
-Fits the superellipsoids of a data folder whose truth is known, and says in what share of the fits the 90 % interval of
+Fits the superellipsoids of data folders whose truth is known, and says in what share of the fits the 90 % interval of
 each parameter, estimate ± 1.645 standard deviations, holds the true value. Of the equivalent poses of a body the one
 nearest to the fit counts. Fits with the axes in other roles are another optimum, not noise: they are counted apart.
+Chance alone scatters a share of n fits by 30 %/√n, so that few clouds say little.
 """
 
 import argparse
@@ -71,12 +72,12 @@ def line(row):
 HEADER = f"{'class':20} {'n':>4} {'roles':>5} {'failed':>6}" + "".join(f" {name:>5}" for name in PARAMETERS)
 
 
-def judge(fitter, case, data, truths):
+def judge(fitter, case, truth):
     try:
         report = fitter.report(case)
         if not report.get("covariance"):
             return "no covariance"
-        return deviations(json.loads((data / truths[case.id]).read_text())["primitive"], report) or "other roles"
+        return deviations(json.loads(truth.read_text())["primitive"], report) or "other roles"
     except FitFailed as error:
         return str(error)
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -84,21 +85,25 @@ def judge(fitter, case, data, truths):
 
 
 def run(args):
-    groups = read_cases(args.data, args.classes.split(","), None)
-    listed = json.loads((args.data / "index.json").read_text())["cases"]
-    truths = {case["id"]: case.get("gt", case["file"].rsplit(".", 1)[0] + ".gt.json") for case in listed}
+    groups = {}
+    for data in args.data:
+        found = read_cases(data, args.classes.split(","), None)
+        listed = json.loads((data / "index.json").read_text())["cases"]
+        truths = {case["id"]: data / case.get("gt", case["file"].rsplit(".", 1)[0] + ".gt.json") for case in listed}
+        for group, cases in found.items():
+            if all(case.model == "superellipsoid" for case in cases):
+                groups.setdefault(group, []).extend((case, truths[case.id]) for case in cases)
     fitter = Supersurface(args.supersurface, args.timeout)
     if not args.json:
         print(f"90 % intervals of {fitter.version}: share that holds the truth, in percent\n\n{HEADER}", flush=True)
     rows, sides = [], {"all around": [], "one view": []}
     for group, cases in groups.items():
-        if any(case.model != "superellipsoid" for case in cases):
-            continue
-        fits = [judge(fitter, case, args.data, truths) for case in cases]
-        sides["one view" if cases[0].viewpoint else "all around"] += fits
+        fits = [judge(fitter, case, truth) for case, truth in cases]
+        sides["one view" if cases[0][0].viewpoint else "all around"] += fits
         rows.append(summary(group, fits))
         if not args.json:
             print(line(rows[-1]), flush=True)
+    sides["all"] = [fit for fits in sides.values() for fit in fits]
     totals = [summary(name, fits) for name, fits in sides.items() if fits]
     if args.json:
         print(json.dumps({"supersurface": fitter.version, "classes": rows, "totals": totals}, indent=1))
@@ -109,7 +114,9 @@ def run(args):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("data", metavar="DATA", type=Path, help="folder with index.json, clouds and their .gt.json")
+    parser.add_argument(
+        "data", metavar="DATA", type=Path, nargs="+", help="folders with index.json, clouds and their .gt.json"
+    )
     parser.add_argument("--supersurface", required=True, help="our program")
     parser.add_argument("--classes", default="b_,d_view_depth", help="classes whose names begin so [b_,d_view_depth]")
     parser.add_argument("--timeout", type=float, default=120, metavar="S", help="seconds for one fit [120]")
