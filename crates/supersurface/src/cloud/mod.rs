@@ -7,7 +7,7 @@ mod units;
 mod voxels;
 
 pub use normals::normals;
-pub(crate) use normals::{Neighbourhood, smallest_axis};
+pub(crate) use normals::{Neighbourhood, Places, smallest_axis};
 pub use point_cloud::PointCloud;
 pub(crate) use sets::Sets;
 pub use units::{UnitHint, unit_hint};

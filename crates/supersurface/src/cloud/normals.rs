@@ -7,7 +7,9 @@
 use nalgebra::Matrix3;
 
 use crate::cloud::{PointCloud, VoxelGrid};
-use crate::numeric::symmetric::least_axis;
+use crate::numeric::column::Column;
+use crate::numeric::lanes::{Job, WIDTH, dispatch};
+use crate::numeric::symmetric::{least_axes, least_axis};
 use crate::{Direction, Point, Vector};
 
 /// Normals at the points named by `indices`, from neighbours within `radius` (metres) among the same
@@ -58,13 +60,43 @@ impl Neighbourhood {
         self.count += 1.0;
     }
 
+    /// What is within a radius of a point; the places in their columns of those within another are appended to `near`.
+    pub(crate) fn within(
+        places: &Places,
+        at: &Point,
+        [radius, nearer]: [f64; 2],
+        near: &mut Vec<u32>,
+    ) -> Self {
+        let mut found = Self::default();
+        let limits = [radius * radius, nearer * nearer];
+        dispatch(Within { places, at: at.coords.into(), limits, near, found: &mut found });
+        found
+    }
+
     /// The normal that faces outward; `None` of fewer than five neighbours or where they lie on a line.
     pub(crate) fn normal(&self, outward: &Vector) -> Option<Direction> {
         if self.count < 6.0 {
             return None;
         }
-        let normal = smallest_axis(&self.covariance())?;
-        Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
+        facing(smallest_axis(&self.covariance())?, outward)
+    }
+
+    /// The normals of many, each of which faces outward.
+    pub(crate) fn normals(
+        all: &[Self],
+        outward: impl Fn(usize) -> Vector,
+    ) -> Vec<Option<Direction>> {
+        let scaled = |near: &Self| {
+            let covariance = near.covariance();
+            covariance / covariance.trace()
+        };
+        let covariances: Vec<Matrix3<f64>> = all.iter().map(scaled).collect();
+        let each = all.iter().zip(least_axes(&covariances)).enumerate();
+        let normal = |(i, (near, (values, axis))): (usize, (&Self, _))| match near.count < 6.0 {
+            true => None,
+            false => facing(sound_axis(values, axis)?, &outward(i)),
+        };
+        each.map(normal).collect()
     }
 
     /// The covariance of the points.
@@ -77,6 +109,75 @@ impl Neighbourhood {
     }
 }
 
+fn facing(normal: Direction, outward: &Vector) -> Option<Direction> {
+    Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
+}
+
+/// Points side by side, padded with far ones.
+#[derive(Debug, Default)]
+pub(crate) struct Places([Column<f64>; 3]);
+
+impl Places {
+    /// Takes other points.
+    pub(crate) fn set(&mut self, points: impl Iterator<Item = Point>) {
+        self.0.iter_mut().for_each(Column::clear);
+        for p in points {
+            (0..3).for_each(|k| self.0[k].push(p[k]));
+        }
+        let padded = self.0[0].len().next_multiple_of(WIDTH);
+        self.0.iter_mut().for_each(|column| column.resize(padded, f64::INFINITY));
+    }
+}
+
+/// Moments of the places within one distance of a point, and which of them are within another.
+struct Within<'a> {
+    places: &'a Places,
+    at: [f64; 3],
+    /// Squares of the distances.
+    limits: [f64; 2],
+    near: &'a mut Vec<u32>,
+    found: &'a mut Neighbourhood,
+}
+
+impl Job for Within<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let [x, y, z] = &self.places.0;
+        let blocks = x.chunks_exact(WIDTH).zip(y.chunks_exact(WIDTH)).zip(z.chunks_exact(WIDTH));
+        let mut sums = [[0.0; WIDTH]; 10];
+        for (b, ((x, y), z)) in blocks.enumerate() {
+            let mut bits = [0u32; WIDTH];
+            for i in 0..WIDTH {
+                let [dx, dy, dz] = [x[i] - self.at[0], y[i] - self.at[1], z[i] - self.at[2]];
+                let square = dx * dx + dy * dy + dz * dz;
+                let within = square <= self.limits[0];
+                let own = |v: f64| if within { v } else { 0.0 };
+                let [dx, dy, dz] = [own(dx), own(dy), own(dz)];
+                sums[0][i] += dx;
+                sums[1][i] += dy;
+                sums[2][i] += dz;
+                sums[3][i] += dx * dx;
+                sums[4][i] += dy * dy;
+                sums[5][i] += dz * dz;
+                sums[6][i] += dy * dz;
+                sums[7][i] += dz * dx;
+                sums[8][i] += dx * dy;
+                sums[9][i] += own(1.0);
+                bits[i] = if square < self.limits[1] { 1 << i } else { 0 };
+            }
+            let mut bits: u32 = bits.iter().sum();
+            while bits != 0 {
+                self.near.push((b * WIDTH) as u32 + bits.trailing_zeros());
+                bits &= bits - 1;
+            }
+        }
+        let total = sums.map(|lanes| lanes.iter().sum::<f64>());
+        let [x, y, z, xx, yy, zz, yz, zx, xy, count] = total;
+        *self.found =
+            Neighbourhood { sum: [x, y, z], square: [xx, yy, zz], mixed: [yz, zx, xy], count };
+    }
+}
+
 /// The eigenvector of the smallest eigenvalue of a covariance; `None` when the two smallest are the
 /// same to rounding (points on a line) or a number is not finite.
 pub(crate) fn smallest_axis(covariance: &Matrix3<f64>) -> Option<Direction> {
@@ -85,6 +186,10 @@ pub(crate) fn smallest_axis(covariance: &Matrix3<f64>) -> Option<Direction> {
         return None;
     }
     let (values, axis) = least_axis(&(covariance / scale));
+    sound_axis(values, axis)
+}
+
+fn sound_axis(values: [f64; 3], axis: Vector) -> Option<Direction> {
     (values[1] >= 1e-9).then(|| Direction::new_normalize(axis))
 }
 

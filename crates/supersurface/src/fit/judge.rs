@@ -8,7 +8,7 @@ use super::finish::PRECISE;
 use super::prepare::Normalised;
 use super::solver::Hypothesis;
 use super::start::quantile;
-use super::{Fit, FitError, View};
+use super::{Effort, Fit, FitError, View};
 use crate::numeric::lanes::Lane;
 use crate::{Point, Vector};
 
@@ -50,9 +50,10 @@ pub(super) fn judge(
         probabilities,
         margin,
         moves,
-        covariance: covariance(cloud, h),
+        covariance: (cloud.effort != Effort::Rough).then(|| covariance(cloud, h)).flatten(),
         iterations: h.rounds,
         stopped: h.stopped,
+        body: (*s, *placement),
     })
 }
 

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use crate::cloud::{Neighbourhood, PointCloud, VoxelGrid};
+use crate::cloud::{Neighbourhood, Places, PointCloud, VoxelGrid};
 use crate::{Point, Vector};
 
 /// Side of a voxel, radius of its normal, and distance of the seeds, in metres.
@@ -102,33 +102,26 @@ impl Voxels {
         let (radius, neighbour) = (scale * NORMAL_RADIUS, scale * NEIGHBOUR);
         let at: Vec<Point> = grid.representatives().map(|i| cloud.points[i as usize]).collect();
         let middle = at.iter().map(|p| p.coords).sum::<Vector>() / at.len().max(1) as f64;
-        let mut normal = vec![None; at.len()];
+        let mut about = vec![Neighbourhood::default(); at.len()];
         // neighbours as they are found, and where those of each voxel are
         let (mut found, mut ranges) = (Vec::new(), vec![0..0; at.len()]);
         if let Some(cells) = VoxelGrid::new(&at, 0..at.len() as u32, radius) {
-            let mut places: Vec<Point> = Vec::new();
+            let (mut places, mut near) = (Places::default(), Vec::new());
             cells.neighbourhoods(|members, around| {
-                places.clear();
-                places.extend(around.iter().map(|j| at[*j as usize]));
-                for i in members.iter().map(|i| *i as usize) {
-                    let (p, from) = (at[i], found.len());
-                    let mut beside = Neighbourhood::default();
-                    for (j, q) in around.iter().zip(&places) {
-                        let offset = q - p;
-                        let square = offset.norm_squared();
-                        if square <= radius * radius {
-                            beside.add(&offset);
-                            if square < neighbour * neighbour && *j as usize != i {
-                                found.push(*j);
-                            }
-                        }
-                    }
-                    ranges[i] = from..found.len();
-                    let outward = cloud.viewpoint.map_or_else(|| p.coords - middle, |eye| eye - p);
-                    normal[i] = beside.normal(&outward).map(|n| n.into_inner());
+                places.set(around.iter().map(|j| at[*j as usize]));
+                for i in members {
+                    near.clear();
+                    let [from, k] = [found.len(), *i as usize];
+                    about[k] =
+                        Neighbourhood::within(&places, &at[k], [radius, neighbour], &mut near);
+                    found.extend(near.iter().map(|j| around[*j as usize]).filter(|j| j != i));
+                    ranges[k] = from..found.len();
                 }
             });
         }
+        let outward = |i: usize| cloud.viewpoint.map_or(at[i].coords - middle, |eye| eye - at[i]);
+        let normals = Neighbourhood::normals(&about, outward).into_iter();
+        let normal = normals.map(|n| n.map(|n| n.into_inner())).collect();
         Self { scale, at, normal, near: found, ranges }
     }
 

@@ -97,9 +97,7 @@ impl Around<'_> {
 
     /// Mean of the distances of some of the points from a surface, none counted for more than 10 mm, in metres.
     pub(super) fn rough(&self, points: &[u32], fit: &Fit) -> f64 {
-        let some = || points.iter().step_by(points.len().div_ceil(SOME).max(1));
-        let sum: f64 = some().map(|i| self.distance(*i, fit).min(FAR)).sum();
-        sum / some().count().max(1) as f64
+        self.off(points, fit).mean()
     }
 
     /// Share of some points at which a surface faces the sensor; 1 where its place is not known.
@@ -125,8 +123,10 @@ impl Around<'_> {
     /// Whether points lie on a surface in nearly all directions from its z axis.
     fn shows_all_around(&self, points: &[u32], fit: &Fit) -> bool {
         let mut found = [0; SECTORS];
-        for i in points.iter().filter(|i| self.distance(**i, fit) < NEAR * self.noise) {
-            let p = fit.surface.to_local(&self.cloud.points[*i as usize]);
+        let places = || points.iter().map(|i| self.cloud.points[*i as usize]);
+        let distances = fit.distances(places());
+        for (p, _) in places().zip(distances).filter(|(_, d)| d.abs() < NEAR * self.noise) {
+            let p = fit.surface.to_local(&p);
             let turn = 0.5 + p.y.atan2(p.x) / TAU;
             found[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] += 1;
         }
@@ -134,21 +134,36 @@ impl Around<'_> {
         found.iter().filter(|n| **n * SPARSE >= due).count() >= AROUND
     }
 
-    /// First-order distance `|g - 1|/|∇g|` of a point from a surface, in metres.
-    fn distance(&self, i: u32, fit: &Fit) -> f64 {
-        let p = &self.cloud.points[i as usize];
-        (fit.surface.gauge(p) - 1.0).abs() / fit.surface.gradient(p).norm().max(1e-9)
-    }
-
     /// Median of the distances of some of the points from a surface, in metres.
     pub(super) fn typical(&self, points: &[u32], fit: &Fit) -> f64 {
+        self.off(points, fit).median()
+    }
+
+    /// How far some of the points are from a surface.
+    pub(super) fn off(&self, points: &[u32], fit: &Fit) -> Off {
         let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
-        let mut distances: Vec<f64> = some.map(|i| self.distance(*i, fit)).collect();
-        if distances.is_empty() {
+        let mut distances = fit.distances(some.map(|i| self.cloud.points[*i as usize]));
+        distances.iter_mut().for_each(|d| *d = d.abs());
+        Off(distances)
+    }
+}
+
+/// First-order distances of some points from a surface, in metres.
+pub(super) struct Off(Vec<f64>);
+
+impl Off {
+    /// Their mean, none counted for more than 10 mm; 0 for none.
+    pub(super) fn mean(&self) -> f64 {
+        self.0.iter().map(|d| d.min(FAR)).sum::<f64>() / self.0.len().max(1) as f64
+    }
+
+    /// The one in the middle; infinite for none.
+    pub(super) fn median(mut self) -> f64 {
+        if self.0.is_empty() {
             return f64::INFINITY;
         }
-        let middle = distances.len() / 2;
-        *distances.select_nth_unstable_by(middle, f64::total_cmp).1
+        let middle = self.0.len() / 2;
+        *self.0.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 }
 

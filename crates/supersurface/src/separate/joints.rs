@@ -1,5 +1,6 @@
 //! Pairs of pieces that one surface explains, where there is a reason to think that they are one object.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::bodies::{Around, ROUGHLY};
@@ -68,7 +69,8 @@ pub(super) fn joints(
     let tried = each(pairs.len(), |k| {
         let [a, b] = pairs[k];
         let border = borders.get(&[a, b]).copied().unwrap_or_default();
-        let pair = Pair { scene, view, pieces: [&pieces[a], &pieces[b]], border };
+        let pieces = [&pieces[a], &pieces[b]];
+        let pair = Pair { scene, view, pieces, border, body: OnceCell::new() };
         let found = [
             pair.behind([&outlines[a], &outlines[b]]).map(|cost| (cost, Reason::Behind)),
             pair.hollow().map(|cost| (cost, Reason::Hollow)),
@@ -99,9 +101,15 @@ struct Pair<'a> {
     view: &'a View<'a>,
     pieces: [&'a Piece; 2],
     border: Border,
+    /// The convex body of both, where there is one, once it was asked for.
+    body: OnceCell<Option<Fit>>,
 }
 
 impl Pair<'_> {
+    fn fit(&self) -> Option<&Fit> {
+        self.body.get_or_init(|| self.scene.fit(&self.union(), &ROUGHLY).ok()).as_ref()
+    }
+
     fn union(&self) -> Vec<u32> {
         let mut points = self.pieces.map(|p| &p.points[..]).concat();
         points.sort_unstable();
@@ -111,10 +119,11 @@ impl Pair<'_> {
     /// How badly a surface explains the worse of both.
     fn cost(&self, fit: &Fit) -> f64 {
         let cost = |piece: &&Piece| {
-            if self.scene.rough(&piece.points, fit) > ROUGHER * piece.rough {
+            let off = self.scene.off(&piece.points, fit);
+            if off.mean() > ROUGHER * piece.rough {
                 return f64::INFINITY;
             }
-            let distance = self.scene.typical(&piece.points, fit);
+            let distance = off.median();
             let most = (WORSE * piece.own).max(SLIGHT);
             if distance > POOR { f64::INFINITY } else { distance / most }
         };
@@ -130,12 +139,12 @@ impl Pair<'_> {
         if self.view.empty_between(a, b) > HOLES {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
-        let cost = self.cost(&fit);
+        let fit = self.fit()?;
+        let cost = self.cost(fit);
         if cost > 1.0 {
             return None;
         }
-        let against = self.view.contradicted(&fit, [a, b]);
+        let against = self.view.contradicted(fit, [a, b]);
         let cost = cost + AGAINST * against;
         (cost < BEHIND).then_some(cost / BEHIND)
     }
@@ -178,8 +187,8 @@ impl Pair<'_> {
         if !on {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
-        Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
+        let fit = self.fit()?;
+        Some(self.cost(fit)).filter(|cost| *cost < SHALLOW)
     }
 
     /// Pieces of one surface that noise parted: it goes on from one to the other, and one body explains both.
@@ -191,7 +200,7 @@ impl Pair<'_> {
         if self.view.bend(a, b)? < 0.0 {
             return None;
         }
-        let fit = self.scene.fit(&self.union(), &ROUGHLY).ok()?;
-        Some(self.cost(&fit)).filter(|cost| *cost < SHALLOW)
+        let fit = self.fit()?;
+        Some(self.cost(fit)).filter(|cost| *cost < SHALLOW)
     }
 }

@@ -106,8 +106,8 @@ struct Piece {
 impl Piece {
     fn new(scene: &Around<'_>, clump: usize, points: Vec<u32>, options: &FitOptions) -> Self {
         let fit = scene.fit(&points, options);
-        let own = fit.as_ref().map_or(0.0, |f| scene.typical(&points, f));
-        let rough = fit.as_ref().map_or(0.0, |f| scene.rough(&points, f));
+        let off = fit.as_ref().ok().map(|f| scene.off(&points, f));
+        let (rough, own) = off.map_or((0.0, 0.0), |off| (off.mean(), off.median()));
         let heights = scene.heights(&points);
         Self { points, clump, fit, fitted: false, own, rough, heights, joined: Vec::new() }
     }
