@@ -27,8 +27,8 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
 
 /// The same from no more than so many readings on each side of the picture, for a fit that only asks a question.
 pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) -> Vec<Point> {
-    let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
-    let blocked = picture.dilated(&picture.mask(cloud, object));
+    let Some((picture, own)) = Picture::of(cloud, object) else { return Vec::new() };
+    let blocked = picture.dilated(&picture.mask(&own));
     let mut read = vec![None; blocked.len()];
     let mut see = |p: &Point| {
         if let Some(cell) = picture.cell(p)
@@ -52,7 +52,7 @@ pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) ->
         _ => cloud.points.iter().for_each(see),
     }
     let steps = picture.steps_outside(&blocked);
-    let depths = picture.depths(cloud, object);
+    let depths = depths(&own);
     let seen = (0..read.len()).filter_map(|c| read[c].map(|p| (steps[c], p)));
     let gaps = picture
         .gaps(&steps, &read, depths[0])
@@ -71,14 +71,17 @@ pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) ->
 /// side.
 fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
     let [width, height] = cloud.grid?;
-    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+    let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+    // of 32 bits, as wider divisions take their time
+    let columns = u32::try_from(width).ok().filter(|columns| *columns > 0)?;
     for i in object {
-        let at = [*i as usize % width, *i as usize / width];
+        let at = [i % columns, i / columns];
         for k in 0..2 {
             low[k] = low[k].min(at[k]);
             high[k] = high[k].max(at[k]);
         }
     }
+    let [low, high] = [low, high].map(|ends| ends.map(|end| end as usize));
     let side = (high[0].checked_sub(low[0])?).max(high[1].checked_sub(low[1])?) / 2 + 4;
     let top = |v: usize, size: usize| (v + side).min(size.saturating_sub(1));
     Some([
@@ -98,9 +101,9 @@ fn ring(steps: &[u16]) -> impl Iterator<Item = usize> {
 /// not reach beyond what is seen of it. Cells that the object's own points enclose are left out: a hole in
 /// the readings is no hole in the object.
 pub fn outline_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
-    let Some(picture) = Picture::of(cloud, object) else { return Vec::new() };
-    let [_, farthest] = picture.depths(cloud, object);
-    let blocked = picture.dilated(&picture.mask(cloud, object));
+    let Some((picture, own)) = Picture::of(cloud, object) else { return Vec::new() };
+    let [_, farthest] = depths(&own);
+    let blocked = picture.dilated(&picture.mask(&own));
     let steps = picture.steps_outside(&blocked);
     let ring: Vec<usize> = ring(&steps).collect();
     let kept = ring.len().min(MOST);
@@ -124,12 +127,20 @@ pub(super) struct Picture {
     down: Vector,
     corner: [f64; 2],
     cell: f64,
+    /// Cells a unit of length at depth 1.
+    fineness: f64,
     pub(super) width: usize,
     pub(super) height: usize,
 }
 
+/// Least and largest depth of places in a picture.
+fn depths(own: &[[f64; 3]]) -> [f64; 2] {
+    own.iter().fold([f64::INFINITY, 0.0], |[least, most], p| [p[2].min(least), p[2].max(most)])
+}
+
 impl Picture {
-    pub(super) fn of(cloud: &PointCloud, object: &[u32]) -> Option<Self> {
+    /// The picture, and where in it the object's points are: `x/z`, `y/z` and the depth `z`.
+    pub(super) fn of(cloud: &PointCloud, object: &[u32]) -> Option<(Self, Vec<[f64; 3]>)> {
         let viewpoint = cloud.viewpoint?;
         let rays = || {
             let points = object.iter().filter_map(|i| cloud.points.get(*i as usize));
@@ -140,15 +151,19 @@ impl Picture {
         let right = (helper - forward * forward.dot(&helper)).normalize();
         let down = forward.cross(&right);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let mut own = Vec::with_capacity(object.len());
         for r in rays() {
             let z = r.dot(&forward);
             if z <= 0.0 {
                 return None;
             }
-            for (k, c) in [r.dot(&right) / z, r.dot(&down) / z].into_iter().enumerate() {
-                low[k] = low[k].min(c);
-                high[k] = high[k].max(c);
+            let inverse = 1.0 / z;
+            let at = [r.dot(&right) * inverse, r.dot(&down) * inverse];
+            for k in 0..2 {
+                low[k] = low[k].min(at[k]);
+                high[k] = high[k].max(at[k]);
             }
+            own.push([at[0], at[1], z]);
         }
         let cell = (high[0] - low[0]).max(high[1] - low[1]) / CELLS;
         if !(cell > 0.0 && cell.is_finite()) {
@@ -156,16 +171,21 @@ impl Picture {
         }
         let side = |k: usize| ((high[k] - low[k]) / cell + 2.0 * BORDER) as usize + 1;
         let corner = [low[0] - BORDER * cell, low[1] - BORDER * cell];
-        Some(Self {
-            viewpoint,
-            forward,
-            right,
-            down,
-            corner,
-            cell,
-            width: side(0),
-            height: side(1),
-        })
+        let (width, height) = (side(0), side(1));
+        Some((
+            Self {
+                viewpoint,
+                forward,
+                right,
+                down,
+                corner,
+                cell,
+                fineness: 1.0 / cell,
+                width,
+                height,
+            },
+            own,
+        ))
     }
 
     #[inline]
@@ -175,30 +195,24 @@ impl Picture {
         if z.is_nan() || z <= 0.0 {
             return None;
         }
-        let inverse = 1.0 / (z * self.cell);
-        let u = r.dot(&self.right) * inverse - self.corner[0] / self.cell;
-        let v = r.dot(&self.down) * inverse - self.corner[1] / self.cell;
+        let inverse = 1.0 / z;
+        self.cell_at([r.dot(&self.right) * inverse, r.dot(&self.down) * inverse])
+    }
+
+    #[inline]
+    fn cell_at(&self, at: [f64; 2]) -> Option<usize> {
+        let [u, v] = [0, 1].map(|k| (at[k] - self.corner[k]) * self.fineness);
         let inside = u >= 0.0 && v >= 0.0 && u < self.width as f64 && v < self.height as f64;
         inside.then(|| v as usize * self.width + u as usize)
     }
 
     /// The cells that hold points of the object.
-    fn mask(&self, cloud: &PointCloud, object: &[u32]) -> Vec<bool> {
+    fn mask(&self, own: &[[f64; 3]]) -> Vec<bool> {
         let mut mask = vec![false; self.width * self.height];
-        for p in object.iter().filter_map(|i| cloud.points.get(*i as usize)) {
-            if let Some(cell) = self.cell(p) {
-                mask[cell] = true;
-            }
+        for cell in own.iter().filter_map(|[u, v, _]| self.cell_at([*u, *v])) {
+            mask[cell] = true;
         }
         mask
-    }
-
-    /// Least and largest depth of the object's points.
-    fn depths(&self, cloud: &PointCloud, object: &[u32]) -> [f64; 2] {
-        let points = object.iter().filter_map(|i| cloud.points.get(*i as usize));
-        points
-            .map(|p| (p - self.viewpoint).dot(&self.forward))
-            .fold([f64::INFINITY, 0.0], |[least, most], z| [z.min(least), z.max(most)])
     }
 
     /// Cells next to the outline that have no reading, where going on outwards one comes to a reading behind

@@ -156,7 +156,7 @@ impl Seen {
             ..PointCloud::default()
         };
         let object: Vec<u32> = (0..all.len() as u32).collect();
-        let picture = Picture::of(&cloud, &object)?;
+        let (picture, _) = Picture::of(&cloud, &object)?;
         let mut depths: Vec<Option<f64>> = vec![None; picture.width * picture.height];
         let mut apart = vec![usize::MAX; depths.len()];
         for p in &all {

@@ -26,7 +26,7 @@ const SKETCHED: usize = 16;
 /// More starts of a single view than this are sorted out on the way.
 const MANY: usize = 36;
 /// Nats a point by which a start that is farther behind the best is left.
-const FAR: f64 = 0.2;
+const FAR: f64 = 0.4;
 /// A step that promises less than this many nats is not made while bodies are ranked.
 const ROUGH: f64 = 0.02;
 /// Starts that are kept though half of them are fewer.

@@ -64,13 +64,16 @@ pub(crate) fn patches(cloud: &PointCloud, object: &[u32]) -> Patches {
     let Some((scale, grid)) = spread(1.0).or_else(coarse) else { return Patches::default() };
     let voxels = Voxels::new(cloud, &grid, scale);
     let (owners, patches) = voxels.claim();
-    let mut borders: Vec<[u32; 2]> = Vec::new();
-    for i in 0..owners.len() {
-        let across = voxels.near(i).iter().map(|j| [owners[i], owners[*j as usize]]);
-        borders.extend(across.filter(|[a, b]| a < b && *b != NOBODY));
+    // pairs as one number, which is sorted fast
+    let mut borders: Vec<u64> = Vec::new();
+    for (i, own) in owners.iter().enumerate() {
+        let across = voxels.near(i).iter().map(|j| owners[*j as usize]);
+        let across = across.filter(|other| own < other && *other != NOBODY);
+        borders.extend(across.map(|other| u64::from(*own) << 32 | u64::from(other)));
     }
     borders.sort_unstable();
-    let counted = borders.chunk_by(|a, b| a == b).map(|pair| (pair[0], pair.len() as u32));
+    let pair = |both: u64| [(both >> 32) as u32, both as u32];
+    let counted = borders.chunk_by(|a, b| a == b).map(|all| (pair(all[0]), all.len() as u32));
     let mut points = vec![Vec::new(); patches.len()];
     for (c, owner) in owners.iter().enumerate() {
         if let Some(points) = points.get_mut(*owner as usize) {
@@ -162,10 +165,11 @@ impl Voxels {
     fn grow(&self, patches: &[Patch]) -> Vec<u32> {
         let mut owners = vec![NOBODY; self.at.len()];
         let mut far = vec![f64::INFINITY; self.at.len()];
+        let nearness = 1.0 / (self.scale * SEED);
         let cost = |k: usize, i: usize| {
             let patch = &patches[k];
             let turned = self.normal[i].map_or(0.5, |n| 1.0 - n.dot(&patch.normal));
-            (self.at[i] - patch.centre).norm() / (self.scale * SEED) + NORMALS * turned
+            (self.at[i] - patch.centre).norm() * nearness + NORMALS * turned
         };
         let mut edge: Vec<usize> = Vec::new();
         for (k, patch) in patches.iter().enumerate() {

@@ -18,7 +18,7 @@ const SOME: usize = 200;
 /// Points by which a rough fit is made.
 const FEW: usize = 1000;
 /// Readings on each side of the picture by which the space about it is known, for rough fits and for others.
-const READINGS: [usize; 2] = [100, 200];
+const READINGS: [usize; 2] = [100, 140];
 /// Points of an object that make its picture whole.
 const SOLID: usize = 4000;
 /// Farther from a surface than this, in metres, is off it.
