@@ -196,6 +196,33 @@ fn sound_axis(values: [f64; 3], axis: Vector) -> Option<Direction> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random::Stream;
+
+    #[test]
+    fn many_places_are_as_one_after_the_other() {
+        let mut random = Stream::new(3, 0);
+        let points: Vec<Point> =
+            (0..61).map(|_| Point::from([0; 3].map(|_| random.between(-0.1, 0.1)))).collect();
+        let mut places = Places::default();
+        places.set(points.iter().copied());
+        let (at, [radius, nearer]) = (points[7], [0.1, 0.06]);
+        let mut near = Vec::new();
+        let found = Neighbourhood::within(&places, &at, [radius, nearer], &mut near);
+        let mut known = Neighbourhood::default();
+        let apart = |p: &Point| (p - at).norm();
+        points.iter().filter(|p| apart(p) <= radius).for_each(|p| known.add(&(p - at)));
+        assert!(found.count == known.count && known.count > 6.0);
+        assert!((found.covariance() - known.covariance()).norm() < 1e-15);
+        let among: Vec<u32> = (0..61).filter(|i| apart(&points[*i as usize]) < nearer).collect();
+        assert_eq!(near, among);
+        let outward = |_: usize| Vector::x();
+        let [normal, none] =
+            [0, 1].map(|k| Neighbourhood::normals(&[found, Neighbourhood::default()], outward)[k]);
+        assert!(
+            none.is_none()
+                && normal.unwrap().dot(&known.normal(&Vector::x()).unwrap()) > 1.0 - 1e-9
+        );
+    }
 
     #[test]
     fn a_ball_faces_outwards_and_a_line_nowhere() {

@@ -208,7 +208,8 @@ pub struct Fit {
 
 impl Fit {
     /// First-order distances `(g - 1)/|∇g|` of points from the surface in metres, negative inside (Taubin, 1991): many at
-    /// once, which takes a small part of the time of one after the other.
+    /// once, which takes a small part of the time of one after the other. A point that is not finite, or where the gradient
+    /// vanishes, is far outside.
     ///
     /// ```
     /// # use supersurface::{Point, fit::{fit, FitOptions, View}};

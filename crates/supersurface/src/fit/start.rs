@@ -308,3 +308,28 @@ pub(super) fn quantile(values: &mut [f64], q: f64) -> f64 {
     let k = ((values.len() - 1) as f64 * q).round() as usize;
     *values.select_nth_unstable_by(k, f64::total_cmp).1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn starts_that_lead_to_one_body_are_alike() {
+        let start = Parameters {
+            log_axes: [0.1, -0.4, 0.6],
+            rotation: Rotation3::new(Vector::new(0.3, -0.8, 0.2)),
+            ..Parameters::ball(Family::Superellipsoid)
+        };
+        let turned =
+            |by: Vector| Parameters { rotation: start.rotation * Rotation3::new(by), ..start };
+        let half = turned(Vector::x() * std::f64::consts::PI);
+        let quarter = turned(Vector::z() * FRAC_PI_2);
+        let swapped = Parameters { log_axes: [-0.4, 0.1, 0.6], ..quarter };
+        assert!([start, half, swapped].iter().all(|other| is_alike(&start, other)));
+        let longer = Parameters { log_axes: [0.1, -0.4, 0.8], ..start };
+        let moved = Parameters { position: Vector::y() * 0.2, ..start };
+        let wider = Parameters { ring: 3.0, ..start };
+        let others = [quarter, longer, moved, wider, turned(Vector::y() * 0.5)];
+        assert!(others.iter().all(|other| !is_alike(&start, other)));
+    }
+}
