@@ -36,34 +36,30 @@ pub(super) fn clumped(
 ) -> Vec<Piece> {
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
-    let (mut large, mut slivers): (Vec<_>, Vec<_>) =
-        pieces.into_iter().partition(|p| p.len() >= least);
+    let (large, mut slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
     let whole = |joined: Option<Reason>| {
         let piece = Piece::new(scene, clump, points.to_vec(), options);
         vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
     };
-    if large.len() < 2 {
+    let rough = |points| Piece::new(scene, clump, points, &ROUGHLY);
+    let parts: Vec<Piece> = if large.len() < 2 {
         let all = whole((!slivers.is_empty()).then_some(Reason::Sliver));
         let found = all[0].fit.as_ref().ok().and_then(|fit| split(scene, &all[0].points, fit));
         let Some(sides) = found else { return all };
-        large = sides.to_vec();
         slivers.clear();
-    }
-    let mut parts: Vec<Piece> = Vec::new();
-    while let Some(points) = large.pop() {
-        let piece = Piece::new(scene, clump, points, &ROUGHLY);
-        match piece.fit.as_ref().ok().and_then(|fit| split(scene, &piece.points, fit)) {
-            Some(sides) => large.extend(sides),
-            None => parts.push(piece),
+        sides.map(rough).to_vec()
+    } else {
+        let parts: Vec<Piece> = large.into_iter().map(rough).collect();
+        if parts.len() < MANY && is_alike(scene, points, &parts) {
+            let all = whole(Some(Reason::Whole));
+            if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, points, fit, &parts)) {
+                return all;
+            }
         }
-    }
+        parts
+    };
+    let mut parts = cut(scene, parts, rough);
     parts.sort_by_key(|part| part.points[0]);
-    if parts.len() < MANY && is_alike(scene, points, &parts) {
-        let all = whole(Some(Reason::Whole));
-        if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, points, fit, &parts)) {
-            return all;
-        }
-    }
     for sliver in slivers {
         let distance =
             |part: &Piece| part.fit.as_ref().map_or(f64::INFINITY, |f| scene.typical(&sliver, f));
@@ -77,6 +73,18 @@ pub(super) fn clumped(
         }
     }
     parts
+}
+
+/// The parts, those cut that two bodies explain and one does not.
+fn cut(scene: &Around<'_>, mut parts: Vec<Piece>, rough: impl Fn(Vec<u32>) -> Piece) -> Vec<Piece> {
+    let mut whole = Vec::with_capacity(parts.len());
+    while let Some(part) = parts.pop() {
+        match part.fit.as_ref().ok().and_then(|fit| split(scene, &part.points, fit)) {
+            Some(sides) => parts.extend(sides.map(&rough)),
+            None => whole.push(part),
+        }
+    }
+    whole
 }
 
 /// Whether a careful fit of one body to all parts of a clump is worth while.
