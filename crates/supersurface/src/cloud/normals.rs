@@ -127,6 +127,39 @@ impl Places {
         let padded = self.0[0].len().next_multiple_of(WIDTH);
         self.0.iter_mut().for_each(|column| column.resize(padded, f64::INFINITY));
     }
+
+    /// Square of the least distance to some other points; infinite where there is none.
+    pub(crate) fn nearest(&self, points: &[Point]) -> f64 {
+        let mut least = f64::INFINITY;
+        dispatch(Nearest { places: self, points, least: &mut least });
+        least
+    }
+}
+
+struct Nearest<'a> {
+    places: &'a Places,
+    points: &'a [Point],
+    least: &'a mut f64,
+}
+
+impl Job for Nearest<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let [x, y, z] = &self.places.0;
+        let mut least = [f64::INFINITY; WIDTH];
+        for p in self.points {
+            let blocks =
+                x.chunks_exact(WIDTH).zip(y.chunks_exact(WIDTH)).zip(z.chunks_exact(WIDTH));
+            for ((x, y), z) in blocks {
+                for i in 0..WIDTH {
+                    let [dx, dy, dz] = [x[i] - p.x, y[i] - p.y, z[i] - p.z];
+                    let square = dx * dx + dy * dy + dz * dz;
+                    least[i] = if square < least[i] { square } else { least[i] };
+                }
+            }
+        }
+        *self.least = least.into_iter().fold(f64::INFINITY, f64::min);
+    }
 }
 
 /// Moments of the places within one distance of a point, and which of them are within another.
@@ -215,6 +248,9 @@ mod tests {
         assert!((found.covariance() - known.covariance()).norm() < 1e-15);
         let among: Vec<u32> = (0..61).filter(|i| apart(&points[*i as usize]) < nearer).collect();
         assert_eq!(near, among);
+        let far = at + Vector::new(0.0, 0.3, 0.0);
+        let least = points.iter().map(|p| (p - far).norm_squared()).fold(f64::INFINITY, f64::min);
+        assert!((places.nearest(&[far, far * 2.0]) - least).abs() < 1e-15);
         let outward = |_: usize| Vector::x();
         let [normal, none] =
             [0, 1].map(|k| Neighbourhood::normals(&[found, Neighbourhood::default()], outward)[k]);

@@ -56,32 +56,30 @@ impl<'a> VoxelGrid<'a> {
             return None;
         }
         // points that follow each other often lie in one cube: such runs are sorted, not points
-        let (mut named, mut runs): (Vec<u32>, Vec<(u128, u32)>) = (Vec::new(), Vec::new());
+        let (mut named, mut runs): (Vec<u32>, Vec<(Cube, u32)>) = (Vec::new(), Vec::new());
         let mut rising = true;
         for i in indices {
             let Some(p) = points.get(i as usize) else { continue };
             if !p.coords.iter().all(|c| c.is_finite()) {
                 continue;
             }
-            let key = pack(cube(p, cell));
-            if runs.last().is_none_or(|(last, _)| *last != key) {
-                runs.push((key, named.len() as u32));
+            let cube = cube(p, cell);
+            if runs.last().is_none_or(|(last, _)| *last != cube) {
+                runs.push((cube, named.len() as u32));
             }
             rising &= named.last().is_none_or(|last| *last < i);
             named.push(i);
         }
-        let ends = runs.iter().skip(1).map(|r| r.1).chain([named.len() as u32]);
-        let mut runs: Vec<(u128, u32, u32)> =
-            runs.iter().zip(ends).map(|((key, from), to)| (*key, *from, to)).collect();
-        runs.sort_unstable();
         let (mut cubes, mut starts) = (Vec::new(), Vec::new());
         let mut entries = Vec::with_capacity(named.len());
-        for (key, from, to) in runs {
+        for k in in_order(&runs) {
+            let (from, key) = (runs[k].1, pack(runs[k].0));
             if cubes.last() != Some(&key) {
                 cubes.push(key);
                 starts.push(entries.len() as u32);
             }
-            entries.extend_from_slice(&named[from as usize..to as usize]);
+            let to = runs.get(k + 1).map_or(named.len(), |next| next.1 as usize);
+            entries.extend_from_slice(&named[from as usize..to]);
         }
         starts.push(entries.len() as u32);
         if !rising {
@@ -199,10 +197,37 @@ impl<'a> VoxelGrid<'a> {
     }
 }
 
+/// The places of runs of points in the order of their cubes, and of the points within each.
+fn in_order(runs: &[(Cube, u32)]) -> Vec<usize> {
+    let ends = |k: usize, end: fn(i64, i64) -> i64| runs.iter().map(|r| r.0[k]).reduce(end);
+    let [low, high] = [i64::min, i64::max].map(|end| [0, 1, 2].map(|k| ends(k, end).unwrap_or(0)));
+    let bits = |span: usize| usize::BITS - span.leading_zeros();
+    let widths = [0, 1, 2].map(|k| bits((high[k] - low[k]) as usize));
+    let place = bits(runs.len());
+    // short numbers are sorted fast
+    if widths.iter().sum::<u32>() + place <= u64::BITS {
+        let number = |cube: &Cube, at: usize| {
+            let key = (0..3).fold(0, |key, k| key << widths[k] | (cube[k] - low[k]) as u64);
+            key << place | at as u64
+        };
+        let mut numbers: Vec<u64> =
+            runs.iter().zip(0..).map(|((c, _), at)| number(c, at)).collect();
+        numbers.sort_unstable();
+        return numbers.iter().map(|n| (n & ((1 << place) - 1)) as usize).collect();
+    }
+    let mut order: Vec<usize> = (0..runs.len()).collect();
+    order.sort_by_key(|k| runs[*k].0);
+    order
+}
+
 fn cube(p: &Point, cell: f64) -> Cube {
     // `as` saturates, so that no coordinate overflows.
-    let place = |x: f64| ((x / cell).floor() as i64).saturating_add(SIDE / 2);
-    [p.x, p.y, p.z].map(|x| place(x).clamp(0, SIDE - 1))
+    let place = |x: f64| {
+        let (x, whole) = (x / cell, (x / cell) as i64);
+        let floor = whole.saturating_sub(i64::from(whole as f64 > x));
+        floor.saturating_add(SIDE / 2).clamp(0, SIDE - 1)
+    };
+    [place(p.x), place(p.y), place(p.z)]
 }
 
 #[cfg(test)]

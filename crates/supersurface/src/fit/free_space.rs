@@ -7,6 +7,7 @@
 //! matter; those within two cells of its outline are left out, as depth is not to be trusted there.
 
 use crate::cloud::PointCloud;
+use crate::numeric::lanes::{Job, WIDTH, dispatch};
 use crate::{Point, Vector};
 
 /// Most free points that are returned.
@@ -30,26 +31,20 @@ pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) ->
     let Some((picture, own)) = Picture::of(cloud, object) else { return Vec::new() };
     let blocked = picture.dilated(&picture.mask(&own));
     let mut read = vec![None; blocked.len()];
-    let mut see = |p: &Point| {
-        if let Some(cell) = picture.cell(p)
-            && !blocked[cell]
-            && read[cell].is_none()
-        {
+    let (width, [u0, u1, v0, v1], step) = match (cloud.grid, bounds(cloud, object)) {
+        (Some([width, _]), Some([u0, u1, v0, v1])) => {
+            (width, [u0, u1, v0, v1], ((u1 - u0).max(v1 - v0) / most).max(1))
+        }
+        _ => (cloud.points.len(), [0, cloud.points.len().saturating_sub(1), 0, 0], 1),
+    };
+    let mut look = |p: &Point, cell: usize| {
+        if !blocked[cell] && read[cell].is_none() {
             read[cell] = Some(*p);
         }
     };
-    match (cloud.grid, bounds(cloud, object)) {
-        (Some([width, _]), Some([u0, u1, v0, v1])) => {
-            let step = ((u1 - u0).max(v1 - v0) / most).max(1);
-            for v in (v0..=v1).step_by(step) {
-                for u in (u0..=u1).step_by(step) {
-                    if let Some(p) = cloud.points.get(v * width + u) {
-                        see(p);
-                    }
-                }
-            }
-        }
-        _ => cloud.points.iter().for_each(see),
+    for v in (v0..=v1).step_by(step) {
+        let row = cloud.points.get(v * width + u0..=v * width + u1).unwrap_or_default();
+        dispatch(Cells { picture: &picture, row, step, look: &mut look });
     }
     let steps = picture.steps_outside(&blocked);
     let depths = depths(&own);
@@ -65,6 +60,47 @@ pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) ->
     // squares: most of what a body could wrongly grow into lies next to what is seen of it
     let at = |i: usize| i * i * found.len() / (MOST * MOST);
     (0..MOST).map(|i| found[at(i)].1).collect()
+}
+
+/// Finds the cells of every so-many-th point of a row.
+struct Cells<'a, F> {
+    picture: &'a Picture,
+    row: &'a [Point],
+    step: usize,
+    look: &'a mut F,
+}
+
+impl<F: FnMut(&Point, usize)> Job for Cells<'_, F> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Self { picture, row, step, look } = self;
+        let Picture { viewpoint: eye, forward, right, down, corner, fineness, .. } = picture;
+        let size = [picture.width as f64, picture.height as f64];
+        for block in row.chunks(WIDTH * step) {
+            // what a short block lacks is in no cell
+            let mut at = [[f64::NAN; WIDTH]; 3];
+            for (i, p) in block.iter().step_by(step).enumerate() {
+                (at[0][i], at[1][i], at[2][i]) = (p.x, p.y, p.z);
+            }
+            let mut cells = [-1.0; WIDTH];
+            for i in 0..WIDTH {
+                let [x, y, z] = [at[0][i] - eye.x, at[1][i] - eye.y, at[2][i] - eye.z];
+                let depth = x * forward.x + y * forward.y + z * forward.z;
+                let inverse = 1.0 / depth;
+                let u = (x * right.x + y * right.y + z * right.z) * inverse;
+                let v = (x * down.x + y * down.y + z * down.z) * inverse;
+                let [u, v] = [(u - corner[0]) * fineness, (v - corner[1]) * fineness];
+                let inside =
+                    (depth > 0.0) & (u >= 0.0) & (v >= 0.0) & (u < size[0]) & (v < size[1]);
+                cells[i] = if inside { v.floor() * size[0] + u.floor() } else { -1.0 };
+            }
+            for (p, cell) in block.iter().step_by(step).zip(cells) {
+                if cell >= 0.0 {
+                    look(p, cell as usize);
+                }
+            }
+        }
+    }
 }
 
 /// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with half its size to each

@@ -101,12 +101,14 @@ fn is_board(cloud: &PointCloud, facet: &Facet) -> bool {
         if height < -CLEAR && inner.contains(&cell(spot)) {
             under.insert(cell(spot));
         }
-        if facet.outline.depth(&spot).abs() < BESIDE {
-            if height > -THICK {
-                edge.insert(cell(spot));
-            } else if height < -CLEAR && height > -FACE[0] {
-                face.insert(cell(spot));
-            }
+        let (thin, thick) = (height > -THICK, height < -CLEAR && height > -FACE[0]);
+        let beside = || facet.outline.holds(&spot, -BESIDE) && !facet.outline.holds(&spot, BESIDE);
+        if (thin || thick) && beside() {
+            if thin {
+                edge.insert(cell(spot))
+            } else {
+                face.insert(cell(spot))
+            };
         }
     }
     under.len() as f64 > OPEN * inner.len() as f64

@@ -7,20 +7,8 @@
 
 use crate::Point;
 use crate::cloud::{PointCloud, Sets, VoxelGrid};
+use crate::segment::class::Class;
 use crate::segment::sight::{Sight, grid};
-
-/// What a point is to the search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Class {
-    /// Not a reading.
-    Missing,
-    /// Something that is not to be clustered.
-    Other,
-    /// The same, but so high that it may be the edge of what is.
-    Low,
-    /// To be clustered.
-    Above,
-}
 
 /// Pixels without reading that are bridged, and widths of a pixel added to the gap.
 const BRIDGE: usize = 4;

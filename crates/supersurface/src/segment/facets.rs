@@ -68,27 +68,35 @@ impl Family {
     }
 }
 
-/// The facets of a family of planes among the points named by `indices`.
+/// Readings, thinned, with their normals where they are of an image; those without a normal there are left out.
+pub(crate) struct Turned(Vec<(u32, Option<Direction>)>);
+
+impl Turned {
+    /// Those of the points named by `indices`.
+    pub(crate) fn of(cloud: &PointCloud, indices: &[u32], sight: &Sight) -> Self {
+        let rough = Rough::of(cloud, sight);
+        let normal = |i: u32| match &rough {
+            Some(rough) => rough.normal(i).map(Some),
+            None => Some(None),
+        };
+        let thin = indices.iter().step_by(indices.len() / DENSE + 1);
+        Self(thin.filter_map(|i| Some((*i, normal(*i)?))).collect())
+    }
+}
+
+/// The facets of a family of planes among some readings.
 pub(crate) fn facets(
     cloud: &PointCloud,
-    indices: &[u32],
+    turned: &Turned,
     family: Family,
     up: &Direction,
     sight: &Sight,
     random: &mut Stream,
 ) -> Vec<Facet> {
-    let rough = Rough::of(cloud, sight);
-    let normal = |i: u32| match &rough {
-        Some(rough) => rough.normal(i).map(Some),
-        None => Some(None),
-    };
     // what faces another way is in no such plane
     let agrees = |n: &Direction| (up.dot(n).abs() > ALIKE) == (family == Family::Level);
-    let thin = indices.iter().step_by(indices.len() / DENSE + 1);
-    let free: Vec<(u32, Option<Direction>)> = thin
-        .filter_map(|i| Some((*i, normal(*i)?)))
-        .filter(|(_, n)| n.is_none_or(|n| agrees(&n)))
-        .collect();
+    let free: Vec<(u32, Option<Direction>)> =
+        turned.0.iter().filter(|(_, n)| n.is_none_or(|n| agrees(&n))).copied().collect();
     if free.len() < FEWEST {
         return Vec::new();
     }

@@ -119,14 +119,11 @@ impl Outline {
         self.corners.iter().map(far).fold(0.0, f64::max)
     }
 
-    /// How deep inside the spot is: the smallest distance to the lines through the edges, negative
-    /// outside; minus infinity when the outline has no area.
-    pub(crate) fn depth(&self, s: &Spot) -> f64 {
-        if self.corners.len() < 3 {
-            return f64::NEG_INFINITY;
-        }
-        let inside = |[x, y, c]: &[f64; 3]| x * s[0] + y * s[1] + c;
-        self.edges.iter().map(inside).fold(f64::INFINITY, f64::min)
+    /// Whether a spot is so deep inside at least, by the lines through the edges; outside by at most so much, where `depth`
+    /// is negative. Nothing is inside an outline without area.
+    pub(crate) fn holds(&self, s: &Spot, depth: f64) -> bool {
+        let deep = |[x, y, c]: &[f64; 3]| x * s[0] + y * s[1] + c >= depth;
+        self.corners.len() >= 3 && self.edges.iter().all(deep)
     }
 
     /// What two outlines have in common.
@@ -197,7 +194,8 @@ mod tests {
         assert!((a.area() - 4.0).abs() < 1e-12 && (a.diameter() - 8f64.sqrt()).abs() < 1e-12);
         assert!((a.common(&b).area() - 0.5).abs() < 1e-12);
         assert_eq!(a.common(&square(5.0, 5.0, 1.0)).area(), 0.0);
-        assert!((a.depth(&[0.5, 1.0]) - 0.5).abs() < 1e-12 && a.depth(&[3.0, 1.0]) < -0.99);
+        assert!(a.holds(&[0.5, 1.0], 0.499) && !a.holds(&[0.5, 1.0], 0.501));
+        assert!(a.holds(&[3.0, 1.0], -1.01) && !a.holds(&[3.0, 1.0], -0.99));
     }
 
     #[test]
@@ -218,7 +216,7 @@ mod tests {
         for mut spots in [vec![], vec![[1.0, 2.0]; 5], vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]] {
             let outline = Outline::around(&mut spots);
             assert_eq!(outline.area(), 0.0);
-            assert!(outline.depth(&[0.0, 0.0]) < 0.0);
+            assert!(!outline.holds(&[0.0, 0.0], -1.0));
         }
     }
 }

@@ -23,15 +23,10 @@ impl<'a> Frame<'a> {
     /// That of a cloud; `None` where it is not organised.
     pub(crate) fn of(cloud: &'a PointCloud) -> Option<Self> {
         let [width, height] = grid(cloud)?;
-        let (mut columns, mut rows) = (vec![0usize; width], vec![0usize; height]);
-        for (row, count) in cloud.points.chunks_exact(width).zip(&mut rows) {
-            for (p, column) in row.iter().zip(&mut columns) {
-                let seen = usize::from(seen(p));
-                *column += seen;
-                *count += seen;
-            }
-        }
-        let ends = [ends(&columns, height), ends(&rows, width)];
+        let seen = |column: usize, row: usize| seen(&cloud.points[row * width + column]);
+        let in_column = |u: usize| (0..height).filter(|v| seen(u, *v)).count();
+        let in_row = |v: usize| (0..width).filter(|u| seen(*u, v)).count();
+        let ends = [ends(in_column, width, height), ends(in_row, height, width)];
         Some(Self { points: &cloud.points, width, ends })
     }
 
@@ -56,11 +51,12 @@ fn diagonal<'a>(mut points: impl Iterator<Item = &'a Point>) -> f64 {
     (high - low).norm()
 }
 
-/// The first and the last row or column without the strip that has hardly a reading.
-fn ends(counts: &[usize], full: usize) -> [usize; 2] {
-    let strip = counts.len() / STRIP;
-    let seen = |c: &usize| 5 * c > full;
-    let first = counts.iter().position(seen).filter(|k| *k <= strip).unwrap_or(0);
-    let last = counts.iter().rposition(seen).filter(|k| k + strip + 1 >= counts.len());
-    [first, last.unwrap_or(counts.len() - 1)]
+/// The first and the last of `lines` rows or columns without the strip that has hardly a reading, by how many of `full`
+/// each has.
+fn ends(readings: impl Fn(usize) -> usize, lines: usize, full: usize) -> [usize; 2] {
+    let strip = lines / STRIP;
+    let is_seen = |k: &usize| 5 * readings(*k) > full;
+    let first = (0..=strip).find(is_seen).unwrap_or(0);
+    let last = (0..=strip).map(|k| lines - 1 - k).find(is_seen).unwrap_or(lines - 1);
+    [first, last]
 }

@@ -7,7 +7,7 @@
 //! - does it *hang*: is the support seen right under it?
 //! - is the space between it and another piece *hidden* by a third?
 
-use crate::segment::clusters::Class;
+use crate::segment::class::Class;
 use crate::segment::sight::seen;
 use crate::{Point, Vector};
 

@@ -8,6 +8,7 @@
 //! Objects that touch are one clump, which [`separate`](crate::separate) cuts.
 
 mod boards;
+mod class;
 mod clusters;
 mod convexity;
 mod facets;
@@ -248,8 +249,9 @@ const LEAST: usize = 30;
 /// The readings of a cloud, by index.
 fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
     let count = cloud.points.len();
+    let mut seen = Vec::with_capacity(count);
     let all = cloud.points.iter().zip(0u32..);
-    let seen: Vec<u32> = all.filter(|(p, _)| sight::seen(p)).map(|(_, i)| i).collect();
+    seen.extend(all.filter(|(p, _)| sight::seen(p)).map(|(_, i)| i));
     match seen.len() {
         _ if count == 0 => Err(SegmentError::EmptyCloud),
         0 => Err(SegmentError::NoFinitePoints { points: count }),

@@ -10,6 +10,7 @@
 //! What is left must be large enough, and stand on the part of the support that was seen.
 
 use crate::Point;
+use crate::segment::class::Margins;
 use crate::segment::footprint::Ground;
 use crate::segment::image::Image;
 use crate::segment::piece::Piece;
@@ -226,7 +227,7 @@ fn slight(
         return Some(DropReason::Speck);
     }
     let middle = piece.sample.get(piece.sample.len() / 2);
-    if middle.is_some_and(|p| piece.top < FLAT * support.margin(p, sight, options)) {
+    if middle.is_some_and(|p| piece.top < FLAT * Margins::of(support, sight, options).at(p)) {
         return Some(DropReason::Flat);
     }
     let aloft = piece.aloft() && (piece.size() < SMALL || piece.bottom > HIGH) && !carried;

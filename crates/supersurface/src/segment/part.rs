@@ -2,7 +2,8 @@
 
 use crate::Point;
 use crate::cloud::PointCloud;
-use crate::segment::clusters::{Class, pieces};
+use crate::segment::class::{Class, Margins};
+use crate::segment::clusters::pieces;
 use crate::segment::footprint::Ground;
 use crate::segment::image::Image;
 use crate::segment::objects::gather;
@@ -30,10 +31,9 @@ pub(crate) fn part(
     sight: &Sight,
     options: &SegmentOptions,
 ) -> Segmentation {
-    let mut class: Vec<Class> =
-        cloud.points.iter().map(|p| main.class(p, sight, options)).collect();
+    let mut class = Margins::of(&main, sight, options).classes(&cloud.points);
     let all = pieces(cloud, &class, sight, options.gap, LEAST);
-    let stock = Stock::of(cloud, &all, &main, options);
+    let stock = Stock::of(cloud, &all, &class, options);
     let scene = Scene { cloud, stock: &stock, support: &main, sight };
     let Room { levels, walls } = furnish(&scene, options);
     let supports: Vec<Support> = std::iter::once(main).chain(levels).collect();
@@ -41,9 +41,11 @@ pub(crate) fn part(
         (vec![all], Vec::new())
     } else {
         let below = standing(&cloud.points, &supports);
+        let margins: Vec<Margins> =
+            supports.iter().map(|s| Margins::of(s, sight, options)).collect();
         for ((class, p), k) in class.iter_mut().zip(&cloud.points).zip(&below) {
             if *k > 0 {
-                *class = supports[*k as usize].class(p, sight, options);
+                *class = margins[*k as usize].class(p);
             }
         }
         let taken = walls.iter().flat_map(|wall| &wall.facet.points);
@@ -114,7 +116,7 @@ fn standing(points: &[Point], supports: &[Support]) -> Vec<u32> {
     let of = |p: &Point| {
         let heights = supports.iter().zip(&grounds).zip(0u32..).map(|((s, ground), k)| {
             let height = s.plane.height(p);
-            (height, k, height > -SLACK && s.outline.depth(&ground.spot(p)) > -SIDE)
+            (height, k, height > -SLACK && s.outline.holds(&ground.spot(p), -SIDE))
         });
         let under = heights.clone().filter(|(_, _, over)| *over);
         let nearest = under.min_by(|a, b| a.0.total_cmp(&b.0));

@@ -171,6 +171,8 @@ impl Voxels {
             let turned = self.normal[i].map_or(0.5, |n| 1.0 - n.dot(&patch.normal));
             (self.at[i] - patch.centre).norm() * nearness + NORMALS * turned
         };
+        // the patch for which a voxel's neighbours were looked at
+        let mut spread = vec![NOBODY; self.at.len()];
         let mut edge: Vec<usize> = Vec::new();
         for (k, patch) in patches.iter().enumerate() {
             let i = patch.seed;
@@ -184,11 +186,17 @@ impl Voxels {
         for _ in 0..(2.0 * SEED / VOXEL) as usize {
             let mut next = Vec::new();
             for i in edge {
-                let k = owners[i] as usize;
+                let own = owners[i];
+                if std::mem::replace(&mut spread[i], own) == own {
+                    continue;
+                }
                 for j in self.near(i).iter().map(|j| *j as usize) {
-                    let c = cost(k, j);
+                    if owners[j] == own {
+                        continue;
+                    }
+                    let c = cost(own as usize, j);
                     if c < far[j] {
-                        (far[j], owners[j]) = (c, k as u32);
+                        (far[j], owners[j]) = (c, own);
                         next.push(j);
                     }
                 }

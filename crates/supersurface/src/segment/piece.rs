@@ -1,7 +1,7 @@
 //! A piece of the cloud above the support: its heights, its outline, its distance to another.
 
 use crate::Point;
-use crate::cloud::VoxelGrid;
+use crate::cloud::{Places, VoxelGrid};
 use crate::segment::footprint::{Ground, Outline};
 use crate::shape::Plane;
 
@@ -64,13 +64,9 @@ impl Piece {
                 |p: &&Point| (0..3).all(|k| p[k] >= b.low[k] - most && p[k] <= b.high[k] + most);
             a.sample.iter().filter(near).copied().collect()
         };
-        let (own, others) = (facing(self, other), facing(other, self));
-        let mut least = f64::INFINITY;
-        for p in &own {
-            for q in &others {
-                least = (p - q).norm_squared().min(least);
-            }
-        }
+        let mut places = Places::default();
+        places.set(facing(other, self).into_iter());
+        let least = places.nearest(&facing(self, other));
         (least <= most * most).then(|| least.sqrt())
     }
 

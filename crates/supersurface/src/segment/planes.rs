@@ -8,16 +8,18 @@
 use nalgebra::Matrix3;
 
 use crate::cloud::{PointCloud, smallest_axis};
+use crate::numeric::column::Column;
+use crate::numeric::lanes::{Job, WIDTH, dispatch, fused};
 use crate::numeric::random::Stream;
 use crate::segment::sight::{Sight, depth_noise};
 use crate::shape::Plane;
 use crate::{Direction, Point, Vector};
 
 /// Widths: this many standard deviations, plus a floor in metres.
-const WIDTHS: f64 = 3.0;
-const FLOOR: f64 = 0.0015;
+pub(crate) const WIDTHS: f64 = 3.0;
+pub(crate) const FLOOR: f64 = 0.0015;
 /// Width where the sensor's place is unknown, in metres.
-const BLIND: f64 = 0.006;
+pub(crate) const BLIND: f64 = 0.006;
 
 /// A reading as the search sees it: the vector from the eye (or the cloud's middle), and the width
 /// that its noise allows per unit of n·vector.
@@ -39,6 +41,184 @@ impl Reading {
             }
             None => Self { ray: p - middle, slope: 0.0, floor: BLIND },
         }
+    }
+}
+
+/// Readings side by side, padded with such as lie in no plane.
+#[derive(Debug, Default)]
+pub(crate) struct Columns {
+    ray: [Column<f64>; 3],
+    slope: Column<f64>,
+    floor: Column<f64>,
+    count: usize,
+}
+
+impl Columns {
+    /// Takes other readings.
+    pub(crate) fn set<'a>(&mut self, readings: impl Iterator<Item = &'a Reading>) {
+        let Self { ray, slope, floor, count } = self;
+        ray.iter_mut().chain([&mut *slope, &mut *floor]).for_each(Column::clear);
+        *count = 0;
+        for r in readings {
+            (0..3).for_each(|k| ray[k].push(r.ray[k]));
+            slope.push(r.slope);
+            floor.push(r.floor);
+            *count += 1;
+        }
+        let padded = count.next_multiple_of(WIDTH);
+        ray.iter_mut().chain([slope, floor]).for_each(|column| column.resize(padded, 0.0));
+    }
+
+    /// Those of some readings.
+    fn of<'a>(readings: impl Iterator<Item = &'a Reading>) -> Self {
+        let mut columns = Self::default();
+        columns.set(readings);
+        columns
+    }
+
+    /// The columns by blocks: rays, slopes, floors.
+    #[inline(always)]
+    fn blocks(&self) -> impl Iterator<Item = [&[f64]; 5]> {
+        let [x, y, z] = self.ray.each_ref().map(|column| column.chunks_exact(WIDTH));
+        let all = x.zip(y).zip(z).zip(self.slope.chunks_exact(WIDTH));
+        let all = all.zip(self.floor.chunks_exact(WIDTH));
+        all.map(|((((x, y), z), slope), floor)| [x, y, z, slope, floor])
+    }
+
+    /// Heights over a plane of the readings that lie in it.
+    pub(crate) fn near(&self, normal: &Direction, offset: f64) -> impl Iterator<Item = f64> + '_ {
+        let normal = *normal;
+        let reading = move |i: usize| {
+            let ray = Vector::new(self.ray[0][i], self.ray[1][i], self.ray[2][i]);
+            Reading { ray, slope: self.slope[i], floor: self.floor[i] }
+        };
+        let heights = (0..self.count).map(move |i| height(&normal, offset, &reading(i)));
+        heights.filter(|(h, width)| h.abs() < *width).map(|(h, _)| h)
+    }
+
+    /// Median of the distances from a plane in widths, of the readings that lie in it.
+    pub(crate) fn deviation(
+        &self,
+        normal: &Direction,
+        offset: f64,
+        shares: &mut Column<f64>,
+    ) -> Option<f64> {
+        let plane = [normal.x, normal.y, normal.z, offset];
+        dispatch(Shares { columns: self, plane, shares: &mut *shares });
+        shares.resize(self.count, 0.0);
+        // those out of the plane come after all in it
+        let inside = shares.iter().filter(|s| **s < 1.0).count();
+        (inside > 0).then(|| *shares.select_nth_unstable_by(inside / 2, f64::total_cmp).1)
+    }
+
+    /// The plane of least squares through the readings within `share` of their widths about a plane, each
+    /// weighted by 1 / width^2.
+    pub(crate) fn least_squares(
+        &self,
+        normal: &Direction,
+        offset: f64,
+        share: f64,
+    ) -> Option<(Direction, f64)> {
+        // Sums about one of the readings, so that a distant cloud loses no digits.
+        let first = |column: &Column<f64>| column.first().copied().unwrap_or_default();
+        let origin = Vector::from(self.ray.each_ref().map(first));
+        let mut sums = [0.0; 10];
+        let plane = [normal.x, normal.y, normal.z, offset];
+        dispatch(Moments { columns: self, plane, share, origin: origin.into(), sums: &mut sums });
+        let [weight, x, y, z, xx, yy, zz, yz, zx, xy] = sums;
+        let mean = Vector::new(x, y, z) / weight;
+        let squares = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz) / weight;
+        let normal = smallest_axis(&(squares - mean * mean.transpose()))?;
+        towards_eye(normal, mean + origin)
+    }
+}
+
+/// Height of a reading of columns over a plane, and its width.
+#[inline(always)]
+fn height_at<const FUSED: bool>(ray: [f64; 3], of: [f64; 2], plane: &[f64; 4]) -> (f64, f64) {
+    let [x, y, z] = ray;
+    let along = fused::<FUSED>(plane[0], x, fused::<FUSED>(plane[1], y, plane[2] * z));
+    (along + plane[3], fused::<FUSED>(of[0], along.abs(), of[1]))
+}
+
+/// Moments of readings about a plane, weighted by 1 / width^2: those of order 0, 1 and 2.
+struct Moments<'a> {
+    columns: &'a Columns,
+    plane: [f64; 4],
+    share: f64,
+    origin: [f64; 3],
+    sums: &'a mut [f64; 10],
+}
+
+impl Job for Moments<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let mut sums = [[0.0; WIDTH]; 10];
+        for [x, y, z, slope, floor] in self.columns.blocks() {
+            for i in 0..WIDTH {
+                let (h, width) =
+                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                let w = if h.abs() < self.share * width { 1.0 / (width * width) } else { 0.0 };
+                let v = [x[i] - self.origin[0], y[i] - self.origin[1], z[i] - self.origin[2]];
+                let wv = [w * v[0], w * v[1], w * v[2]];
+                sums[0][i] += w;
+                for k in 0..3 {
+                    sums[1 + k][i] += wv[k];
+                    sums[4 + k][i] = fused::<FUSED>(wv[k], v[k], sums[4 + k][i]);
+                }
+                sums[7][i] = fused::<FUSED>(wv[1], v[2], sums[7][i]);
+                sums[8][i] = fused::<FUSED>(wv[2], v[0], sums[8][i]);
+                sums[9][i] = fused::<FUSED>(wv[0], v[1], sums[9][i]);
+            }
+        }
+        *self.sums = sums.map(|lanes| lanes.iter().sum());
+    }
+}
+
+/// Distances from a plane in widths.
+struct Shares<'a> {
+    columns: &'a Columns,
+    plane: [f64; 4],
+    shares: &'a mut Column<f64>,
+}
+
+impl Job for Shares<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.shares.resize(self.columns.slope.len(), 0.0);
+        let shares = self.shares.chunks_exact_mut(WIDTH);
+        for ([x, y, z, slope, floor], out) in self.columns.blocks().zip(shares) {
+            for i in 0..WIDTH {
+                let (h, width) =
+                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                out[i] = h.abs() / width;
+            }
+        }
+    }
+}
+
+/// How well readings agree with a plane: the sum of 1 - (distance / width)^2 over those in it.
+struct Score<'a> {
+    columns: &'a Columns,
+    plane: [f64; 4],
+    score: &'a mut f64,
+}
+
+impl Job for Score<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let mut sums = [0.0; WIDTH];
+        for [x, y, z, slope, floor] in self.columns.blocks() {
+            for i in 0..WIDTH {
+                let (h, width) =
+                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                let share = h / width;
+                let own = 1.0 - share * share;
+                // a padded reading has no width: its share is no number or infinite
+                sums[i] += if own > 0.0 { own } else { 0.0 };
+            }
+        }
+        *self.score = sums.iter().sum();
     }
 }
 
@@ -133,6 +313,7 @@ fn best(
     allowed: impl Fn(&Direction) -> bool,
 ) -> Option<Candidate> {
     let jury: Vec<Reading> = spread(free, JURY, random).iter().map(|i| all[*i as usize]).collect();
+    let columns = Columns::of(jury.iter());
     let mut best: Option<(f64, Direction, f64)> = None;
     for trial in 0..trials {
         let Some((normal, offset)) = sample(&jury, trial % 2 == 0, random) else { continue };
@@ -140,19 +321,16 @@ fn best(
             continue;
         }
         let mut score = 0.0;
-        for r in &jury {
-            let (h, width) = height(&normal, offset, r);
-            let x = h / width;
-            score += (1.0 - x * x).max(0.0);
-        }
+        let plane = [normal.x, normal.y, normal.z, offset];
+        dispatch(Score { columns: &columns, plane, score: &mut score });
         if best.is_none_or(|b| score > b.0) {
             best = Some((score, normal, offset));
         }
     }
     let (_, mut normal, mut offset) = best?;
+    let columns = Columns::of(free.iter().map(|i| &all[*i as usize]));
     for _ in 0..3 {
-        let inside = free.iter().map(|i| &all[*i as usize]);
-        (normal, offset) = least_squares(inside, &normal, offset, 1.0)?;
+        (normal, offset) = columns.least_squares(&normal, offset, 1.0)?;
     }
     let inside = |i: &&u32| {
         let (h, width) = height(&normal, offset, &all[**i as usize]);
@@ -193,32 +371,6 @@ fn towards_eye(normal: Direction, point: Vector) -> Option<(Direction, f64)> {
     let offset = -normal.dot(&point);
     let plane = if offset < 0.0 { (-normal, -offset) } else { (normal, offset) };
     plane.1.is_finite().then_some(plane)
-}
-
-/// The plane of least squares through the readings within `share` of their widths about a plane, each
-/// weighted by 1 / width^2.
-pub(crate) fn least_squares<'a>(
-    readings: impl Iterator<Item = &'a Reading>,
-    normal: &Direction,
-    offset: f64,
-    share: f64,
-) -> Option<(Direction, f64)> {
-    // Sums about one of the readings, so that a distant cloud loses no digits.
-    let mut origin = None;
-    let (mut weight, mut sum, mut squares) = (0.0, Vector::zeros(), Matrix3::zeros());
-    for r in readings {
-        let (h, width) = height(normal, offset, r);
-        if h.abs() < share * width {
-            let w = 1.0 / (width * width);
-            let v = r.ray - *origin.get_or_insert(r.ray);
-            weight += w;
-            sum += v * w;
-            squares += (v * w) * v.transpose();
-        }
-    }
-    let mean = sum / weight;
-    let normal = smallest_axis(&(squares / weight - mean * mean.transpose()))?;
-    towards_eye(normal, mean + origin?)
 }
 
 #[cfg(test)]

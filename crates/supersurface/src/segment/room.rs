@@ -9,9 +9,10 @@ use crate::cloud::PointCloud;
 use crate::numeric::random::Stream;
 use crate::segment::SegmentOptions;
 use crate::segment::boards::{bottom, levels};
-use crate::segment::facets::{Facet, Family, facets, lies_in};
+use crate::segment::class::Class;
+use crate::segment::facets::{Facet, Family, Turned, facets, lies_in};
 use crate::segment::footprint::Ground;
-use crate::segment::sight::{Sight, seen};
+use crate::segment::sight::Sight;
 use crate::segment::table::Support;
 use crate::segment::walls::{Wall, walls};
 
@@ -19,8 +20,6 @@ use crate::segment::walls::{Wall, walls};
 const SPACIOUS: f64 = 0.5;
 /// Length of a facet of something too large for an object, or of a tote's longer wall, at least, in metres.
 pub(crate) const LARGE: f64 = 0.4;
-/// Depth beneath the support from which a point may be of another one, in metres.
-const BENEATH: f64 = 0.1;
 /// How far beside its outline a facet goes on where its readings have no normal of their own, in metres.
 const EDGE: f64 = 0.02;
 
@@ -44,7 +43,7 @@ impl Stock {
     pub(crate) fn of(
         cloud: &PointCloud,
         pieces: &[Vec<u32>],
-        support: &Support,
+        class: &[Class],
         options: &SegmentOptions,
     ) -> Self {
         let size = |piece: &Vec<u32>| {
@@ -64,9 +63,8 @@ impl Stock {
                 stock.vast.extend(piece);
             }
         }
-        let beneath = |p: &Point| support.plane.height(p) < -BENEATH && seen(p);
-        let beneath = cloud.points.iter().zip(0u32..).filter(|(p, _)| beneath(p)).map(|(_, i)| i);
-        for i in beneath {
+        let beneath = class.iter().zip(0u32..).filter(|(c, _)| **c == Class::Beneath);
+        for (_, i) in beneath {
             stock.points.push(i);
             stock.vast.push(i);
         }
@@ -96,9 +94,10 @@ pub(crate) fn furnish(scene: &Scene<'_>, options: &SegmentOptions) -> Room {
     // a stream of its own: what is found of the table does not depend on it
     let random = &mut Stream::new(options.seed, 1);
     let (up, points) = (scene.support.plane.normal(), &scene.stock.points);
-    let level = facets(scene.cloud, points, Family::Level, &up, scene.sight, random);
+    let turned = Turned::of(scene.cloud, points, scene.sight);
+    let level = facets(scene.cloud, &turned, Family::Level, &up, scene.sight, random);
     let mut levels = levels(scene, &level, random);
-    let upright = facets(scene.cloud, points, Family::Upright, &up, scene.sight, random);
+    let upright = facets(scene.cloud, &turned, Family::Upright, &up, scene.sight, random);
     let walls = walls(scene, upright, &level, &levels);
     levels.extend(bottom(scene, &level, &walls, random));
     Room { levels, walls }
@@ -108,7 +107,7 @@ impl Scene<'_> {
     /// The readings of the stock in the plane of a facet, up to its edges.
     pub(crate) fn within(&self, facet: &Facet) -> Vec<u32> {
         let (ground, eye) = (Ground::of(&facet.plane), facet.middle());
-        let near = |p: &Point| facet.outline.depth(&ground.spot(p)) > -EDGE;
+        let near = |p: &Point| facet.outline.holds(&ground.spot(p), -EDGE);
         let is_within = |i: &u32| {
             self.cloud.points.get(*i as usize).is_some_and(near)
                 && lies_in(self.cloud, *i, &facet.plane, self.sight, &eye)

@@ -10,14 +10,14 @@ use crate::cloud::PointCloud;
 use crate::{Direction, Point, Vector};
 
 /// Farthest coordinate that is taken for a reading, in metres.
-const REACH: f64 = 1e8;
+pub(crate) const REACH: f64 = 1e8;
 
 /// Standard deviation of a depth reading at distance z: a floor, and the growth of a structured-light
 /// camera's error with the square of the distance (Khoshelham and Elberink 2012, eq. 10).
-const NOISE_FLOOR: f64 = 0.001;
-const NOISE_GROWTH: f64 = 1.4e-3;
+pub(crate) const NOISE_FLOOR: f64 = 0.001;
+pub(crate) const NOISE_GROWTH: f64 = 1.4e-3;
 /// Distance beyond which the noise grows no more, in metres: such clouds come from other sensors.
-const NOISE_RANGE: f64 = 8.0;
+pub(crate) const NOISE_RANGE: f64 = 8.0;
 
 /// Standard deviation of a depth reading at distance `range`, in metres.
 pub(crate) fn depth_noise(range: f64) -> f64 {

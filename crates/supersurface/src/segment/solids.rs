@@ -14,12 +14,12 @@ pub(crate) const SIDE: f64 = 0.03;
 /// Whether a point lies in the thickness of a facet, at most so far beside its outline.
 pub(crate) fn is_part(p: &Point, plane: &Plane, outline: &Outline, beside: f64) -> bool {
     let height = plane.height(p);
-    height > -THICK && height < 0.5 * THICK && outline.depth(&Ground::of(plane).spot(p)) > -beside
+    height > -THICK && height < 0.5 * THICK && outline.holds(&Ground::of(plane).spot(p), -beside)
 }
 
 /// Whether the foot of a point on a plane is within an outline, or nearly.
 pub(crate) fn is_over(p: &Point, plane: &Plane, outline: &Outline) -> bool {
-    outline.depth(&Ground::of(plane).spot(p)) > -SIDE
+    outline.holds(&Ground::of(plane).spot(p), -SIDE)
 }
 
 impl Support {

@@ -6,14 +6,13 @@
 //! arm's length. A support is near, wide, and what is seen in front of it is on its upper side.
 
 use crate::cloud::{PointCloud, VoxelGrid};
+use crate::numeric::column::Column;
 use crate::numeric::random::Stream;
-use crate::segment::SegmentOptions;
-use crate::segment::clusters::Class;
 use crate::segment::footprint::{Ground, Outline, Spot, spot_on};
 use crate::segment::planes::{
-    Candidate, Reading, TRIALS, dominant, height, least_squares, readings, spread,
+    Candidate, Columns, Reading, TRIALS, dominant, height, readings, spread,
 };
-use crate::segment::sight::{Sight, seen};
+use crate::segment::sight::Sight;
 use crate::shape::Plane;
 use crate::{Direction, Point};
 
@@ -94,6 +93,8 @@ const SAMPLE: usize = 6000;
 const FINE_SAMPLE: usize = 20_000;
 /// Points from which a support's outline is found.
 const COARSE_SAMPLE: usize = 5000;
+/// Standard deviation of what is normally distributed, by the median of its absolute values, which outliers do not move.
+const NORMAL: f64 = 1.4826;
 /// Gap in the support's points that parts it in two, in metres.
 const PIECE_GAP: f64 = 0.06;
 /// Depth inside its outline at which something is on it, in metres.
@@ -121,29 +122,10 @@ impl Support {
         self.outline.corners().iter().map(|s| spot_on(&self.plane, s)).collect()
     }
 
-    /// What a point is, by its height.
-    pub(crate) fn class(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> Class {
-        if !seen(p) {
-            return Class::Missing;
-        }
-        let height = self.plane.height(p);
-        if height <= 0.0 {
-            return Class::Other;
-        }
-        let height = height / self.margin(p, sight, options);
-        if height > 1.0 {
-            Class::Above
-        } else if height > 0.5 {
-            Class::Low
-        } else {
-            Class::Other
-        }
-    }
-
     /// Share of some points that is over the part of it that was seen.
     pub(crate) fn share_over<'a>(&self, points: impl Iterator<Item = &'a Point> + Clone) -> f64 {
         let ground = Ground::of(&self.plane);
-        let inside = |p: &&Point| self.outline.depth(&ground.spot(p)) > EDGE;
+        let inside = |p: &&Point| self.outline.holds(&ground.spot(p), EDGE);
         points.clone().filter(inside).count() as f64 / points.count().max(1) as f64
     }
 
@@ -157,17 +139,6 @@ impl Support {
         let ground = Ground::of(&plane);
         let outline = Outline::around(&mut corners.iter().map(|p| ground.spot(p)).collect());
         Self { plane, outline, ..self }
-    }
-
-    /// Height from which a point is above the support rather than its noise, in metres.
-    pub(crate) fn margin(&self, p: &Point, sight: &Sight, options: &SegmentOptions) -> f64 {
-        options.margin.unwrap_or_else(|| {
-            let reading = Reading::new(p, sight, p);
-            let width = reading.slope * self.plane.normal().dot(&reading.ray).abs() + reading.floor;
-            let range = reading.ray.norm().min(3.0);
-            // The last term is the camera's own distortion, which bends flat things with distance.
-            3.0 * self.relative * width + 0.001 + 0.0015 * range * range
-        })
     }
 }
 
@@ -267,38 +238,31 @@ pub(crate) fn refine(
     // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
     let (mut normal, mut offset) = (plane.normal(), plane.height(&Point::from(origin)));
-    let (mut relative, mut inside) = (0.0, Vec::new());
+    let (mut relative, mut inside) = (0.0, Columns::default());
     let place = |r: &Reading| Point::from(r.ray + origin);
-    let mut column = Vec::with_capacity(all.len());
+    let mut shares = Column::default();
     for _ in 0..2 {
         // The plane runs on through other things, which would tilt it: only its main piece counts.
         let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
         let outline = main_piece(&all, &normal, offset, PIECE_GAP, |r| ground.spot(&place(r)))?;
-        let on = |r: &&Reading| outline.depth(&ground.spot(&place(r))) >= 0.0;
-        inside.clear();
-        inside.extend(all.iter().filter(on).copied());
+        let on = |r: &&Reading| outline.holds(&ground.spot(&place(r)), 0.0);
+        inside.set(all.iter().filter(on));
         let mut share = 1.0;
         for _ in 0..3 {
-            (normal, offset) = least_squares(inside.iter(), &normal, offset, share)?;
-            let near = near_plane(&inside, &normal, offset);
-            relative = deviation(&mut column, near.map(|(h, width)| h / width))?;
+            (normal, offset) = inside.least_squares(&normal, offset, share)?;
+            relative = NORMAL * inside.deviation(&normal, offset, &mut shares)?;
             share = (2.5 * relative).clamp(0.05, 1.0);
         }
     }
-    let noise = deviation(&mut column, near_plane(&inside, &normal, offset).map(|(h, _)| h))?;
+    let mut heights: Vec<f64> = inside.near(&normal, offset).map(f64::abs).collect();
+    let middle = heights.len() / 2;
+    let median =
+        (!heights.is_empty()).then(|| *heights.select_nth_unstable_by(middle, f64::total_cmp).1);
+    let noise = NORMAL * median?;
     let plane = Plane::new(normal.into_inner(), offset - normal.dot(&origin)).ok()?;
     let ground = Ground::of(&plane);
     let outline = main_piece(&all, &normal, offset, OBJECT_GAP, |r| ground.spot(&place(r)))?;
     Some(Support { plane, noise, relative, outline })
-}
-
-/// Heights over a plane, with their widths, of the readings that lie in it.
-fn near_plane<'a>(
-    readings: &'a [Reading],
-    normal: &'a Direction,
-    offset: f64,
-) -> impl Iterator<Item = (f64, f64)> + 'a {
-    readings.iter().map(move |r| height(normal, offset, r)).filter(|(h, width)| h.abs() < *width)
 }
 
 /// Outline of the largest piece of the readings in a plane.
@@ -319,12 +283,4 @@ fn main_piece(
     let main = pieces.into_iter().max_by_key(Vec::len)?;
     let spots = main.iter().filter_map(|i| feet.get(*i as usize));
     Some(Outline::around(&mut spots.map(|p| [p.x, p.y]).collect()))
-}
-
-/// Standard deviation about zero by the median of the absolute values, which outliers do not move.
-fn deviation(column: &mut Vec<f64>, values: impl Iterator<Item = f64>) -> Option<f64> {
-    column.clear();
-    column.extend(values.map(f64::abs));
-    let middle = column.len() / 2;
-    (!column.is_empty()).then(|| 1.4826 * *column.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
