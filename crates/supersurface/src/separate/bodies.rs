@@ -23,6 +23,11 @@ const READINGS: [usize; 2] = [100, 140];
 const SOLID: usize = 4000;
 /// Farther from a surface than this, in metres, is off it.
 const FAR: f64 = 0.01;
+/// Mean distance from its surface of a thing without dents, and which share of its points may be how far off, in standard
+/// deviations of the support's points: of 104 clumps of several things the least mean was 0.94.
+const PLAIN: f64 = 0.8;
+const STRAYS: f64 = 0.01;
+const STRAY: f64 = 4.0;
 /// Cosine between an upright ring's axis and the support's normal, at least.
 const UPRIGHT: f64 = 0.7;
 
@@ -139,9 +144,19 @@ impl Around<'_> {
         self.off(points, fit).median()
     }
 
+    /// Whether a surface leaves nothing of the points but noise, so that they are one thing without dents.
+    pub(super) fn is_plain(&self, points: &[u32], fit: &Fit) -> bool {
+        let off = self.off_at(points, FEW, fit);
+        off.mean() < PLAIN * self.noise && off.share_beyond(STRAY * self.noise) < STRAYS
+    }
+
     /// How far some of the points are from a surface.
     pub(super) fn off(&self, points: &[u32], fit: &Fit) -> Off {
-        let some = points.iter().step_by(points.len().div_ceil(SOME).max(1));
+        self.off_at(points, SOME, fit)
+    }
+
+    fn off_at(&self, points: &[u32], most: usize, fit: &Fit) -> Off {
+        let some = points.iter().step_by(points.len().div_ceil(most).max(1));
         let mut distances = fit.distances(some.map(|i| self.cloud.points[*i as usize]));
         distances.iter_mut().for_each(|d| *d = d.abs());
         Off(distances)
@@ -155,6 +170,11 @@ impl Off {
     /// Their mean, none counted for more than 10 mm; 0 for none.
     pub(super) fn mean(&self) -> f64 {
         self.0.iter().map(|d| d.min(FAR)).sum::<f64>() / self.0.len().max(1) as f64
+    }
+
+    /// Share of them over a limit in metres.
+    fn share_beyond(&self, limit: f64) -> f64 {
+        self.0.iter().filter(|d| **d > limit).count() as f64 / self.0.len().max(1) as f64
     }
 
     /// The one in the middle; infinite for none.

@@ -1,6 +1,8 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
-use super::bodies::{AS_RING, Around, ROUGHLY};
+use std::cell::OnceCell;
+
+use super::bodies::{AS_RING, Around, ROUGHLY, Seen};
 use super::split::{is_better, split};
 use super::{Piece, Reason};
 use crate::fit::{Fit, FitOptions};
@@ -10,6 +12,8 @@ use crate::surface::Surface;
 /// Points of the least piece, and the share of its clump's.
 const LEAST: usize = 150;
 const SLIVER: f64 = 0.02;
+/// Points from which it is worth while to ask first whether there is anything to cut.
+const LARGE: usize = 4000;
 /// Distance from the surface that a sliver joins, in metres.
 const BESIDE: f64 = 0.006;
 /// Pieces from which a clump is no single body.
@@ -34,6 +38,14 @@ pub(super) fn clumped(
     points: &[u32],
     options: &FitOptions,
 ) -> Vec<Piece> {
+    let whole = |joined: Option<Reason>| {
+        let piece = Piece::new(scene, clump, points.to_vec(), options);
+        vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
+    };
+    let convex = Convex { scene, points, found: OnceCell::new() };
+    if points.len() > LARGE && convex.is_plain() {
+        return whole(None);
+    }
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
     let (large, mut slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
@@ -50,7 +62,7 @@ pub(super) fn clumped(
         sides.map(rough).to_vec()
     } else {
         let parts: Vec<Piece> = large.into_iter().map(rough).collect();
-        if parts.len() < MANY && is_alike(scene, points, &parts) {
+        if parts.len() < MANY && convex.is_alike(&parts) {
             let all = whole(Some(Reason::Whole));
             if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, points, fit, &parts)) {
                 return all;
@@ -87,15 +99,37 @@ fn cut(scene: &Around<'_>, mut parts: Vec<Piece>, rough: impl Fn(Vec<u32>) -> Pi
     whole
 }
 
-/// Whether a careful fit of one body to all parts of a clump is worth while.
-fn is_alike(scene: &Around<'_>, points: &[u32], parts: &[Piece]) -> bool {
-    let own: f64 = parts.iter().map(|p| p.rough * p.points.len() as f64).sum();
-    let off = |fit: &Fit| {
-        parts.iter().map(|p| scene.rough(&p.points, fit) * p.points.len() as f64).sum::<f64>()
-    };
-    let seen = scene.seen(points);
-    let alike = |options| seen.fit(options).is_ok_and(|fit| off(&fit) < UNLIKE * own);
-    alike(&ROUGHLY) || alike(&AS_RING)
+/// A rough convex body for all points of a clump, once it was asked for.
+struct Convex<'a> {
+    scene: &'a Around<'a>,
+    points: &'a [u32],
+    found: OnceCell<(Seen, Option<Fit>)>,
+}
+
+impl Convex<'_> {
+    fn found(&self) -> &(Seen, Option<Fit>) {
+        self.found.get_or_init(|| {
+            let seen = self.scene.seen(self.points);
+            let fit = seen.fit(&ROUGHLY).ok();
+            (seen, fit)
+        })
+    }
+
+    /// Whether it shows that there is nothing to cut.
+    fn is_plain(&self) -> bool {
+        self.found().1.as_ref().is_some_and(|fit| self.scene.is_plain(self.points, fit))
+    }
+
+    /// Whether a careful fit of one body to all parts is worth while, by this one or a ring.
+    fn is_alike(&self, parts: &[Piece]) -> bool {
+        let all = |of: &dyn Fn(&Piece) -> f64| {
+            parts.iter().map(|p| of(p) * p.points.len() as f64).sum::<f64>()
+        };
+        let own = all(&|p| p.rough);
+        let alike = |fit: &Fit| all(&|p| self.scene.rough(&p.points, fit)) < UNLIKE * own;
+        let (seen, convex) = self.found();
+        convex.as_ref().is_some_and(alike) || seen.fit(&AS_RING).is_ok_and(|fit| alike(&fit))
+    }
 }
 
 /// Whether one body explains all parts of a clump.
