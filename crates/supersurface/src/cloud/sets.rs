@@ -23,6 +23,12 @@ impl Sets {
         i
     }
 
+    /// True of many that are in one set, and of none that are not.
+    #[inline]
+    pub(crate) fn seem_one(&self, a: usize, b: usize) -> bool {
+        self.parent[a] == self.parent[b]
+    }
+
     /// Makes the sets of `a` and `b` one.
     #[inline]
     pub(crate) fn join(&mut self, a: usize, b: usize) {

@@ -15,6 +15,8 @@ use super::patches::{Patch, firmest, flattest, patches};
 use super::terms::{Sight, Terms};
 use crate::Vector;
 
+/// Points by which the least rectangle is found, at most.
+const FOOTPRINT: usize = 200;
 /// Quantile that stands for an end of the cloud along an axis.
 const TAIL: f64 = 0.02;
 /// How far the hidden side is completed, in lateral sizes.
@@ -122,7 +124,8 @@ fn upright(points: &[Vector], normal: &Vector) -> Matrix3<f64> {
     let helper = if normal.x.abs() < 0.7 { Vector::x() } else { Vector::y() };
     let u = (helper - normal * normal.dot(&helper)).normalize();
     let v = normal.cross(&u);
-    let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.dot(&u), p.dot(&v)]).collect();
+    let some = points.iter().step_by(points.len().div_ceil(FOOTPRINT).max(1));
+    let flat: Vec<[f64; 2]> = some.map(|p| [p.dot(&u), p.dot(&v)]).collect();
     let mut buffer = Vec::with_capacity(flat.len());
     let mut width = |angle: f64| {
         let (s, c) = angle.sin_cos();

@@ -47,8 +47,15 @@ fn on_grid(
     least: usize,
     near: impl Fn(&Point, &Point) -> bool,
 ) -> Vec<Vec<u32>> {
+    let above: Vec<usize> = (0..class.len()).filter(|i| class[*i] == Class::Above).collect();
     let mut sets = Sets::new(class.len());
-    for i in (0..class.len()).filter(|i| class[*i] == Class::Above) {
+    // most pairs are known to hang together already
+    let mut join = |i: usize, j: usize| {
+        if !sets.seem_one(i, j) && near(&points[i], &points[j]) {
+            sets.join(i, j);
+        }
+    };
+    for &i in &above {
         let column = i % width;
         // Forwards along the row, and down; the two diagonals only directly.
         for (step, room) in [(1, width - 1 - column), (width, usize::MAX)] {
@@ -56,7 +63,7 @@ fn on_grid(
                 let j = i + k * step;
                 match class.get(j) {
                     Some(Class::Missing) => continue,
-                    Some(Class::Above) if near(&points[i], &points[j]) => sets.join(i, j),
+                    Some(Class::Above) => join(i, j),
                     _ => {}
                 }
                 break;
@@ -65,19 +72,18 @@ fn on_grid(
         let left = (column > 0).then(|| i + width - 1);
         let right = (column + 1 < width).then_some(i + width + 1);
         for j in [left, right].into_iter().flatten() {
-            if class.get(j) == Some(&Class::Above) && near(&points[i], &points[j]) {
-                sets.join(i, j);
+            if class.get(j) == Some(&Class::Above) {
+                join(i, j);
             }
         }
     }
-    let above = || (0..class.len()).filter(|i| class[*i] == Class::Above);
     let mut sizes = vec![0u32; class.len()];
-    for i in above() {
-        sizes[sets.root(i)] += 1;
+    for i in &above {
+        sizes[sets.root(*i)] += 1;
     }
     // A root is the smallest of its set, so it is met first: its size gives way to its place.
     let mut pieces: Vec<Vec<u32>> = Vec::new();
-    for i in above() {
+    for i in above {
         let root = sets.root(i);
         if root == i {
             let size = sizes[i] as usize;

@@ -6,6 +6,9 @@
 use crate::shape::Plane;
 use crate::{Direction, Point};
 
+/// Spots from which it is worth while to look for those that cannot be corners of an outline.
+const MANY: usize = 64;
+
 /// Coordinates in a plane, in metres.
 pub(crate) type Spot = [f64; 2];
 
@@ -19,6 +22,11 @@ impl Ground {
     /// Axes of a plane.
     pub(crate) fn of(plane: &Plane) -> Self {
         Self { axes: plane.tangents() }
+    }
+
+    /// The axes.
+    pub(crate) const fn axes(&self) -> [Direction; 2] {
+        self.axes
     }
 
     /// The foot of a point.
@@ -51,8 +59,21 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// The convex hull of the spots, which are sorted on the way.
+    /// The convex hull of the spots, of which those that are no corner may be lost and the others are sorted.
     pub(crate) fn around(spots: &mut Vec<Spot>) -> Self {
+        if spots.len() > MANY {
+            // what lies within the octagon of the farthest ones is no corner (Akl and Toussaint, 1978)
+            let ways = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0]];
+            let far = |[x, y]: &Spot| {
+                let along = |s: &&Spot| x * s[0] + y * s[1];
+                let order = |a: &&Spot, b: &&Spot| along(a).total_cmp(&along(b));
+                [spots.iter().min_by(order), spots.iter().max_by(order)]
+            };
+            let mut farthest: Vec<Spot> = ways.iter().flat_map(far).flatten().copied().collect();
+            let octagon = Self::around(&mut farthest);
+            let rounding = 1e-9 * octagon.diameter();
+            spots.retain(|s| !octagon.holds(s, rounding));
+        }
         spots.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         spots.dedup();
         let mut corners: Vec<Spot> = Vec::new();
@@ -75,6 +96,11 @@ impl Outline {
             corners.extend(spots.first());
         }
         Self::of(corners)
+    }
+
+    /// For each edge its inward unit normal n and c, so that n·s + c is the depth of a spot s.
+    pub(crate) fn edges(&self) -> &[[f64; 3]] {
+        &self.edges
     }
 
     /// Its corners.

@@ -249,9 +249,13 @@ const LEAST: usize = 30;
 /// The readings of a cloud, by index.
 fn readings(cloud: &PointCloud) -> Result<Vec<u32>, SegmentError> {
     let count = cloud.points.len();
-    let mut seen = Vec::with_capacity(count);
-    let all = cloud.points.iter().zip(0u32..);
-    seen.extend(all.filter(|(p, _)| sight::seen(p)).map(|(_, i)| i));
+    // each is written, and the next one over it where it is none: no branch to guess
+    let (mut seen, mut found) = (vec![0; count], 0);
+    for (p, i) in cloud.points.iter().zip(0u32..) {
+        seen[found] = i;
+        found += usize::from(sight::seen(p));
+    }
+    seen.truncate(found);
     match seen.len() {
         _ if count == 0 => Err(SegmentError::EmptyCloud),
         0 => Err(SegmentError::NoFinitePoints { points: count }),

@@ -11,6 +11,7 @@ use crate::cloud::{PointCloud, smallest_axis};
 use crate::numeric::column::Column;
 use crate::numeric::lanes::{Job, WIDTH, dispatch, fused};
 use crate::numeric::random::Stream;
+use crate::segment::footprint::{Ground, Outline};
 use crate::segment::sight::{Sight, depth_noise};
 use crate::shape::Plane;
 use crate::{Direction, Point, Vector};
@@ -50,39 +51,41 @@ pub(crate) struct Columns {
     ray: [Column<f64>; 3],
     slope: Column<f64>,
     floor: Column<f64>,
+    /// 1 where a reading counts, 0 where it does not: it has no width then, and lies in no plane.
+    counts: Column<f64>,
     count: usize,
 }
 
 impl Columns {
-    /// Takes other readings.
-    pub(crate) fn set<'a>(&mut self, readings: impl Iterator<Item = &'a Reading>) {
-        let Self { ray, slope, floor, count } = self;
-        ray.iter_mut().chain([&mut *slope, &mut *floor]).for_each(Column::clear);
-        *count = 0;
+    /// Those of some readings, all of which count.
+    pub(crate) fn of<'a>(readings: impl Iterator<Item = &'a Reading>) -> Self {
+        let Self { mut ray, mut slope, mut floor, mut counts, mut count } = Self::default();
         for r in readings {
             (0..3).for_each(|k| ray[k].push(r.ray[k]));
             slope.push(r.slope);
             floor.push(r.floor);
-            *count += 1;
+            counts.push(1.0);
+            count += 1;
         }
         let padded = count.next_multiple_of(WIDTH);
-        ray.iter_mut().chain([slope, floor]).for_each(|column| column.resize(padded, 0.0));
+        let columns = ray.iter_mut().chain([&mut slope, &mut floor, &mut counts]);
+        columns.for_each(|column| column.resize(padded, 0.0));
+        Self { ray, slope, floor, counts, count }
     }
 
-    /// Those of some readings.
-    fn of<'a>(readings: impl Iterator<Item = &'a Reading>) -> Self {
-        let mut columns = Self::default();
-        columns.set(readings);
-        columns
+    /// Lets those count whose feet are within an outline in a plane, where the rays begin at `origin`.
+    pub(crate) fn count_within(&mut self, outline: &Outline, ground: &Ground, origin: &Vector) {
+        let spot = ground.spot(&Point::from(*origin));
+        dispatch(Within { columns: self, edges: outline.edges(), axes: ground.axes(), spot });
     }
 
-    /// The columns by blocks: rays, slopes, floors.
+    /// The columns by blocks: rays, slopes, floors, and what counts.
     #[inline(always)]
-    fn blocks(&self) -> impl Iterator<Item = [&[f64]; 5]> {
+    fn blocks(&self) -> impl Iterator<Item = [&[f64]; 6]> {
         let [x, y, z] = self.ray.each_ref().map(|column| column.chunks_exact(WIDTH));
         let all = x.zip(y).zip(z).zip(self.slope.chunks_exact(WIDTH));
-        let all = all.zip(self.floor.chunks_exact(WIDTH));
-        all.map(|((((x, y), z), slope), floor)| [x, y, z, slope, floor])
+        let all = all.zip(self.floor.chunks_exact(WIDTH)).zip(self.counts.chunks_exact(WIDTH));
+        all.map(|(((((x, y), z), slope), floor), counts)| [x, y, z, slope, floor, counts])
     }
 
     /// Heights over a plane of the readings that lie in it.
@@ -90,7 +93,8 @@ impl Columns {
         let normal = *normal;
         let reading = move |i: usize| {
             let ray = Vector::new(self.ray[0][i], self.ray[1][i], self.ray[2][i]);
-            Reading { ray, slope: self.slope[i], floor: self.floor[i] }
+            let [slope, floor] = [&self.slope, &self.floor].map(|c| c[i] * self.counts[i]);
+            Reading { ray, slope, floor }
         };
         let heights = (0..self.count).map(move |i| height(&normal, offset, &reading(i)));
         heights.filter(|(h, width)| h.abs() < *width).map(|(h, _)| h)
@@ -135,10 +139,10 @@ impl Columns {
 
 /// Height of a reading of columns over a plane, and its width.
 #[inline(always)]
-fn height_at<const FUSED: bool>(ray: [f64; 3], of: [f64; 2], plane: &[f64; 4]) -> (f64, f64) {
-    let [x, y, z] = ray;
+fn height_at<const FUSED: bool>(ray: [f64; 3], width: [f64; 3], plane: &[f64; 4]) -> (f64, f64) {
+    let ([x, y, z], [slope, floor, counts]) = (ray, width);
     let along = fused::<FUSED>(plane[0], x, fused::<FUSED>(plane[1], y, plane[2] * z));
-    (along + plane[3], fused::<FUSED>(of[0], along.abs(), of[1]))
+    (along + plane[3], counts * fused::<FUSED>(slope, along.abs(), floor))
 }
 
 /// Moments of readings about a plane, weighted by 1 / width^2: those of order 0, 1 and 2.
@@ -154,10 +158,10 @@ impl Job for Moments<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let mut sums = [[0.0; WIDTH]; 10];
-        for [x, y, z, slope, floor] in self.columns.blocks() {
+        for [x, y, z, slope, floor, counts] in self.columns.blocks() {
             for i in 0..WIDTH {
-                let (h, width) =
-                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                let width = [slope[i], floor[i], counts[i]];
+                let (h, width) = height_at::<FUSED>([x[i], y[i], z[i]], width, &self.plane);
                 let w = if h.abs() < self.share * width { 1.0 / (width * width) } else { 0.0 };
                 let v = [x[i] - self.origin[0], y[i] - self.origin[1], z[i] - self.origin[2]];
                 let wv = [w * v[0], w * v[1], w * v[2]];
@@ -187,13 +191,50 @@ impl Job for Shares<'_> {
     fn run<const FUSED: bool>(self) {
         self.shares.resize(self.columns.slope.len(), 0.0);
         let shares = self.shares.chunks_exact_mut(WIDTH);
-        for ([x, y, z, slope, floor], out) in self.columns.blocks().zip(shares) {
+        for ([x, y, z, slope, floor, counts], out) in self.columns.blocks().zip(shares) {
             for i in 0..WIDTH {
-                let (h, width) =
-                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                let width = [slope[i], floor[i], counts[i]];
+                let (h, width) = height_at::<FUSED>([x[i], y[i], z[i]], width, &self.plane);
                 out[i] = h.abs() / width;
             }
         }
+    }
+}
+
+/// Which readings' feet are within an outline.
+struct Within<'a> {
+    columns: &'a mut Columns,
+    edges: &'a [[f64; 3]],
+    axes: [Direction; 2],
+    /// The foot of where the rays begin.
+    spot: [f64; 2],
+}
+
+impl Job for Within<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Columns { ray: [x, y, z], slope, counts, count, .. } = self.columns;
+        let [a, b] = self.axes;
+        let rays = x.chunks_exact(WIDTH).zip(y.chunks_exact(WIDTH)).zip(z.chunks_exact(WIDTH));
+        for (((x, y), z), counts) in rays.zip(counts.chunks_exact_mut(WIDTH)) {
+            let (mut u, mut v) = ([0.0; WIDTH], [0.0; WIDTH]);
+            for i in 0..WIDTH {
+                u[i] = self.spot[0] + a.x * x[i] + a.y * y[i] + a.z * z[i];
+                v[i] = self.spot[1] + b.x * x[i] + b.y * y[i] + b.z * z[i];
+            }
+            let mut depth = [f64::INFINITY; WIDTH];
+            for [along, across, offset] in self.edges {
+                for i in 0..WIDTH {
+                    let d = along * u[i] + across * v[i] + offset;
+                    depth[i] = if d < depth[i] { d } else { depth[i] };
+                }
+            }
+            for i in 0..WIDTH {
+                counts[i] = if depth[i] >= 0.0 { 1.0 } else { 0.0 };
+            }
+        }
+        counts.resize(*count, 0.0);
+        counts.resize(slope.len(), 0.0);
     }
 }
 
@@ -208,10 +249,10 @@ impl Job for Score<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let mut sums = [0.0; WIDTH];
-        for [x, y, z, slope, floor] in self.columns.blocks() {
+        for [x, y, z, slope, floor, counts] in self.columns.blocks() {
             for i in 0..WIDTH {
-                let (h, width) =
-                    height_at::<FUSED>([x[i], y[i], z[i]], [slope[i], floor[i]], &self.plane);
+                let width = [slope[i], floor[i], counts[i]];
+                let (h, width) = height_at::<FUSED>([x[i], y[i], z[i]], width, &self.plane);
                 let share = h / width;
                 let own = 1.0 - share * share;
                 // a padded reading has no width: its share is no number or infinite
