@@ -1,6 +1,6 @@
 //! A clump as pieces between its concave edges, or as one body where that explains them all.
 
-use std::cell::OnceCell;
+use std::cell::{LazyCell, OnceCell};
 
 use super::bodies::{AS_RING, Around, ROUGHLY, Seen};
 use super::split::{is_better, split};
@@ -12,14 +12,13 @@ use crate::surface::Surface;
 /// Points of the least piece, and the share of its clump's.
 const LEAST: usize = 150;
 const SLIVER: f64 = 0.02;
-/// Points from which it is worth while to ask first whether there is anything to cut.
-const LARGE: usize = 4000;
 /// Distance from the surface that a sliver joins, in metres.
 const BESIDE: f64 = 0.006;
+/// Points from which a careful fit of all of them is no matter of course.
+const MUCH: usize = 10_000;
 /// Pieces from which a clump is no single body.
 const MANY: usize = 12;
-/// How many times farther from a rough convex body than from their own the parts of a clump are at most, that is one body
-/// or a ring.
+/// How many times farther from one body than from their own the parts of a clump are at most, that is one.
 const UNLIKE: f64 = 4.5;
 /// How much worse than a piece's own surface that of the whole clump may explain it, and up to which distance in metres
 /// that does not matter.
@@ -38,35 +37,34 @@ pub(super) fn clumped(
     points: &[u32],
     options: &FitOptions,
 ) -> Vec<Piece> {
-    let whole = |joined: Option<Reason>| {
-        let piece = Piece::new(scene, clump, points.to_vec(), options);
-        vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
+    let trial = Trial { scene, points, rough: OnceCell::new() };
+    let whole = LazyCell::new(|| Piece::new(scene, clump, points.to_vec(), options));
+    let body = || whole.fit.as_ref().ok().filter(|fit| !scene.is_corner(points, fit));
+    let as_one = |joined: Option<Reason>| {
+        let joined = joined.into_iter().collect();
+        vec![Piece { joined, fitted: true, ..whole.clone() }]
     };
-    let convex = Convex { scene, points, found: OnceCell::new() };
-    if points.len() > LARGE && convex.is_plain() {
-        return whole(None);
+    // of much a rough body tells whether a careful one is worth while
+    let at_once = points.len() < MUCH || trial.is_plain();
+    if at_once && body().is_some_and(|fit| scene.is_plain(points, fit)) {
+        return as_one(None);
     }
     let least = LEAST.max((SLIVER * points.len() as f64) as usize);
     let pieces = convex_pieces(scene.cloud, points);
     let (large, mut slivers): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|p| p.len() >= least);
-    let whole = |joined: Option<Reason>| {
-        let piece = Piece::new(scene, clump, points.to_vec(), options);
-        vec![Piece { joined: joined.into_iter().collect(), fitted: true, ..piece }]
-    };
     let rough = |points| Piece::new(scene, clump, points, &ROUGHLY);
     let parts: Vec<Piece> = if large.len() < 2 {
-        let all = whole((!slivers.is_empty()).then_some(Reason::Sliver));
-        let found = all[0].fit.as_ref().ok().and_then(|fit| split(scene, &all[0].points, fit));
-        let Some(sides) = found else { return all };
+        let found = whole.fit.as_ref().ok().and_then(|fit| split(scene, points, fit));
+        let Some(sides) = found else {
+            return as_one((!slivers.is_empty()).then_some(Reason::Sliver));
+        };
         slivers.clear();
         sides.map(rough).to_vec()
     } else {
         let parts: Vec<Piece> = large.into_iter().map(rough).collect();
-        if parts.len() < MANY && convex.is_alike(&parts) {
-            let all = whole(Some(Reason::Whole));
-            if all[0].fit.as_ref().is_ok_and(|fit| explains(scene, points, fit, &parts)) {
-                return all;
-            }
+        let is_alike = parts.len() < MANY && (at_once || trial.is_alike(&parts));
+        if is_alike && body().is_some_and(|fit| explains(scene, fit, &parts)) {
+            return as_one(Some(Reason::Whole));
         }
         parts
     };
@@ -100,15 +98,15 @@ fn cut(scene: &Around<'_>, mut parts: Vec<Piece>, rough: impl Fn(Vec<u32>) -> Pi
 }
 
 /// A rough convex body for all points of a clump, once it was asked for.
-struct Convex<'a> {
+struct Trial<'a> {
     scene: &'a Around<'a>,
     points: &'a [u32],
-    found: OnceCell<(Seen, Option<Fit>)>,
+    rough: OnceCell<(Seen, Option<Fit>)>,
 }
 
-impl Convex<'_> {
-    fn found(&self) -> &(Seen, Option<Fit>) {
-        self.found.get_or_init(|| {
+impl Trial<'_> {
+    fn rough(&self) -> &(Seen, Option<Fit>) {
+        self.rough.get_or_init(|| {
             let seen = self.scene.seen(self.points);
             let fit = seen.fit(&ROUGHLY).ok();
             (seen, fit)
@@ -117,38 +115,39 @@ impl Convex<'_> {
 
     /// Whether it shows that there is nothing to cut.
     fn is_plain(&self) -> bool {
-        self.found().1.as_ref().is_some_and(|fit| self.scene.is_plain(self.points, fit))
+        self.rough().1.as_ref().is_some_and(|fit| self.scene.is_plain(self.points, fit))
     }
 
-    /// Whether a careful fit of one body to all parts is worth while, by this one or a ring.
+    /// Whether it, or a ring, is near to all parts.
     fn is_alike(&self, parts: &[Piece]) -> bool {
-        let all = |of: &dyn Fn(&Piece) -> f64| {
-            parts.iter().map(|p| of(p) * p.points.len() as f64).sum::<f64>()
-        };
-        let own = all(&|p| p.rough);
-        let alike = |fit: &Fit| all(&|p| self.scene.rough(&p.points, fit)) < UNLIKE * own;
-        let (seen, convex) = self.found();
-        convex.as_ref().is_some_and(alike) || seen.fit(&AS_RING).is_ok_and(|fit| alike(&fit))
+        let (seen, convex) = self.rough();
+        let is_near = |fit: &Fit| is_near(self.scene, fit, parts);
+        convex.as_ref().is_some_and(is_near) || seen.fit(&AS_RING).is_ok_and(|fit| is_near(&fit))
     }
 }
 
+/// Sum over all points of the parts of what their part has.
+fn sum(parts: &[Piece], of: impl Fn(&Piece) -> f64) -> f64 {
+    parts.iter().map(|p| of(p) * p.points.len() as f64).sum()
+}
+
+/// Whether a body is not much farther from the parts than their own are.
+fn is_near(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
+    sum(parts, |p| scene.rough(&p.points, body)) < UNLIKE * sum(parts, |p| p.rough)
+}
+
 /// Whether one body explains all parts of a clump.
-fn explains(scene: &Around<'_>, points: &[u32], whole: &Fit, parts: &[Piece]) -> bool {
-    let hollow = matches!(whole.surface.shape(), Surface::Supertoroid(_));
-    if scene.is_corner(points, whole) {
+fn explains(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
+    let count = sum(parts, |_| 1.0);
+    let left = sum(parts, |p| scene.rough(&p.points, body)) / count;
+    if !is_near(scene, body, parts) || is_better(scene, left, sum(parts, |p| p.rough) / count) {
         return false;
     }
     let unexplained = |worse: f64, slight: f64| {
-        let poorly = |p: &&Piece| scene.typical(&p.points, whole) > (worse * p.own).max(slight);
-        parts.iter().filter(poorly).map(|p| p.points.len()).sum::<usize>() as f64
+        let poorly = |p: &Piece| scene.typical(&p.points, body) > (worse * p.own).max(slight);
+        sum(parts, |p| f64::from(u8::from(poorly(p))))
     };
-    let all = parts.iter().map(|p| p.points.len()).sum::<usize>() as f64;
-    let mean = |of: &dyn Fn(&Piece) -> f64| {
-        parts.iter().map(|p| of(p) * p.points.len() as f64).sum::<f64>() / all
-    };
-    if is_better(scene, mean(&|p| scene.rough(&p.points, whole)), mean(&|p| p.rough)) {
-        return false;
-    }
+    let hollow = matches!(body.surface.shape(), Surface::Supertoroid(_));
     unexplained(WORSE, SLIGHT) == 0.0
-        || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * all
+        || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * count
 }
