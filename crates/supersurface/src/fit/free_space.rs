@@ -103,8 +103,8 @@ impl<F: FnMut(&Point, usize)> Job for Cells<'_, F> {
     }
 }
 
-/// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with half its size to each
-/// side.
+/// Columns and rows [u0, u1, v0, v1] of an organised cloud around the object, with two fifths of its size to each
+/// side, which is a little more than the border of its picture.
 fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
     let [width, height] = cloud.grid?;
     let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
@@ -118,7 +118,7 @@ fn bounds(cloud: &PointCloud, object: &[u32]) -> Option<[usize; 4]> {
         }
     }
     let [low, high] = [low, high].map(|ends| ends.map(|end| end as usize));
-    let side = (high[0].checked_sub(low[0])?).max(high[1].checked_sub(low[1])?) / 2 + 4;
+    let side = (high[0].checked_sub(low[0])?).max(high[1].checked_sub(low[1])?) * 2 / 5 + 4;
     let top = |v: usize, size: usize| (v + side).min(size.saturating_sub(1));
     Some([
         low[0].saturating_sub(side),

@@ -63,13 +63,16 @@ impl Outline {
     pub(crate) fn around(spots: &mut Vec<Spot>) -> Self {
         if spots.len() > MANY {
             // what lies within the octagon of the farthest ones is no corner (Akl and Toussaint, 1978)
-            let ways = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0]];
-            let far = |[x, y]: &Spot| {
-                let along = |s: &&Spot| x * s[0] + y * s[1];
-                let order = |a: &&Spot, b: &&Spot| along(a).total_cmp(&along(b));
-                [spots.iter().min_by(order), spots.iter().max_by(order)]
-            };
-            let mut farthest: Vec<Spot> = ways.iter().flat_map(far).flatten().copied().collect();
+            let (mut farthest, mut reach) = (vec![spots[0]; 8], [f64::NEG_INFINITY; 8]);
+            for s in spots.iter() {
+                let [x, y] = *s;
+                let along = [x, x + y, y, y - x, -x, -x - y, -y, x - y];
+                for k in 0..8 {
+                    if along[k] > reach[k] {
+                        (reach[k], farthest[k]) = (along[k], *s);
+                    }
+                }
+            }
             let octagon = Self::around(&mut farthest);
             let rounding = 1e-9 * octagon.diameter();
             spots.retain(|s| !octagon.holds(s, rounding));

@@ -18,9 +18,9 @@ const SOME: usize = 200;
 /// Points by which a rough fit is made.
 const FEW: usize = 1000;
 /// Readings on each side of the picture by which the space about it is known, for rough fits and for others.
-const READINGS: [usize; 2] = [100, 140];
-/// Points of an object that make its picture whole.
-const SOLID: usize = 4000;
+const READINGS: [usize; 2] = [90, 126];
+/// Points of an object that make its picture whole, for the same.
+const SOLID: [usize; 2] = [4000, 12_000];
 /// Farther from a surface than this, in metres, is off it.
 const FAR: f64 = 0.01;
 /// Mean distance from its surface of a thing without dents, and which share of its points may be how far off, in standard
@@ -60,7 +60,7 @@ impl Around<'_> {
         match options.effort {
             Effort::Rough => self.seen(object).fit(options),
             _ => {
-                let free = free_points_of(self.cloud, object, READINGS[1]);
+                let free = free_points_of(self.cloud, &thinned(object, SOLID[1]), READINGS[1]);
                 self.view(object, self.cloud.viewpoint, free).fit(options)
             }
         }
@@ -78,7 +78,7 @@ impl Around<'_> {
 
     /// Points made ready for rough fits.
     pub(super) fn seen(&self, object: &[u32]) -> Seen {
-        let free = free_points_of(self.cloud, &thinned(object, SOLID), READINGS[0]);
+        let free = free_points_of(self.cloud, &thinned(object, SOLID[0]), READINGS[0]);
         self.view(&thinned(object, FEW), self.cloud.viewpoint, free)
     }
 
