@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::column::Column;
-use crate::numeric::lanes::{Job, WIDTH, dispatch};
+use crate::numeric::lanes::{Job, WIDEST, dispatch};
 use crate::numeric::symmetric::{least_axes, least_axis};
 use crate::{Direction, Point, Vector};
 
@@ -68,8 +68,8 @@ impl Neighbourhood {
         near: &mut Vec<u32>,
     ) -> Self {
         let mut found = Self::default();
-        let limits = [radius * radius, nearer * nearer];
-        dispatch(Within { places, at: at.coords.into(), limits, near, found: &mut found });
+        let limits = [radius, nearer].map(|r| (r * r) as f32);
+        dispatch(Within { places, at, limits, near, found: &mut found });
         found
     }
 
@@ -81,7 +81,7 @@ impl Neighbourhood {
         facing(smallest_axis(&self.covariance())?, outward)
     }
 
-    /// The normals of many, each of which faces outward.
+    /// The normals of many, by moments in single precision, each of which faces outward.
     pub(crate) fn normals(
         all: &[Self],
         outward: impl Fn(usize) -> Vector,
@@ -94,7 +94,7 @@ impl Neighbourhood {
         let each = all.iter().zip(least_axes(&covariances)).enumerate();
         let normal = |(i, (near, (values, axis))): (usize, (&Self, _))| match near.count < 6.0 {
             true => None,
-            false => facing(sound_axis(values, axis)?, &outward(i)),
+            false => facing(sound_axis(values, axis, 1e-6)?, &outward(i)),
         };
         each.map(normal).collect()
     }
@@ -113,19 +113,26 @@ fn facing(normal: Direction, outward: &Vector) -> Option<Direction> {
     Some(if normal.dot(outward) < 0.0 { -normal } else { normal })
 }
 
-/// Points side by side, padded with far ones.
+/// Points that are near each other side by side, by their places beside the first in single precision, padded with far ones.
 #[derive(Debug, Default)]
-pub(crate) struct Places([Column<f64>; 3]);
+pub(crate) struct Places {
+    beside: [Column<f32>; 3],
+    first: Point,
+}
 
 impl Places {
     /// Takes other points.
     pub(crate) fn set(&mut self, points: impl Iterator<Item = Point>) {
-        self.0.iter_mut().for_each(Column::clear);
+        let Self { beside, first } = self;
+        beside.iter_mut().for_each(Column::clear);
         for p in points {
-            (0..3).for_each(|k| self.0[k].push(p[k]));
+            if beside[0].is_empty() {
+                *first = p;
+            }
+            (0..3).for_each(|k| beside[k].push((p[k] - first[k]) as f32));
         }
-        let padded = self.0[0].len().next_multiple_of(WIDTH);
-        self.0.iter_mut().for_each(|column| column.resize(padded, f64::INFINITY));
+        let padded = beside[0].len().next_multiple_of(WIDEST);
+        beside.iter_mut().for_each(|column| column.resize(padded, f32::INFINITY));
     }
 
     /// Square of the least distance to some other points; infinite where there is none.
@@ -133,6 +140,19 @@ impl Places {
         let mut least = f64::INFINITY;
         dispatch(Nearest { places: self, points, least: &mut least });
         least
+    }
+
+    /// Where a point is beside the first.
+    #[inline(always)]
+    fn beside(&self, p: &Point) -> [f32; 3] {
+        let beside = p - self.first;
+        [beside.x as f32, beside.y as f32, beside.z as f32]
+    }
+
+    #[inline(always)]
+    fn blocks(&self) -> impl Iterator<Item = [&[f32]; 3]> {
+        let [x, y, z] = self.beside.each_ref().map(|column| column.chunks_exact(WIDEST));
+        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
     }
 }
 
@@ -145,29 +165,27 @@ struct Nearest<'a> {
 impl Job for Nearest<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let [x, y, z] = &self.places.0;
-        let mut least = [f64::INFINITY; WIDTH];
+        let mut least = [f32::INFINITY; WIDEST];
         for p in self.points {
-            let blocks =
-                x.chunks_exact(WIDTH).zip(y.chunks_exact(WIDTH)).zip(z.chunks_exact(WIDTH));
-            for ((x, y), z) in blocks {
-                for i in 0..WIDTH {
-                    let [dx, dy, dz] = [x[i] - p.x, y[i] - p.y, z[i] - p.z];
+            let at = self.places.beside(p);
+            for [x, y, z] in self.places.blocks() {
+                for i in 0..WIDEST {
+                    let [dx, dy, dz] = [x[i] - at[0], y[i] - at[1], z[i] - at[2]];
                     let square = dx * dx + dy * dy + dz * dz;
                     least[i] = if square < least[i] { square } else { least[i] };
                 }
             }
         }
-        *self.least = least.into_iter().fold(f64::INFINITY, f64::min);
+        *self.least = f64::from(least.into_iter().fold(f32::INFINITY, f32::min));
     }
 }
 
 /// Moments of the places within one distance of a point, and which of them are within another.
 struct Within<'a> {
     places: &'a Places,
-    at: [f64; 3],
+    at: &'a Point,
     /// Squares of the distances.
-    limits: [f64; 2],
+    limits: [f32; 2],
     near: &'a mut Vec<u32>,
     found: &'a mut Neighbourhood,
 }
@@ -175,16 +193,15 @@ struct Within<'a> {
 impl Job for Within<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let [x, y, z] = &self.places.0;
-        let blocks = x.chunks_exact(WIDTH).zip(y.chunks_exact(WIDTH)).zip(z.chunks_exact(WIDTH));
-        let mut sums = [[0.0; WIDTH]; 10];
-        for (b, ((x, y), z)) in blocks.enumerate() {
-            let mut bits = [0u32; WIDTH];
-            for i in 0..WIDTH {
-                let [dx, dy, dz] = [x[i] - self.at[0], y[i] - self.at[1], z[i] - self.at[2]];
+        let at = self.places.beside(self.at);
+        let mut sums = [[0.0f32; WIDEST]; 10];
+        for (b, [x, y, z]) in self.places.blocks().enumerate() {
+            let mut bits = [0u32; WIDEST];
+            for i in 0..WIDEST {
+                let [dx, dy, dz] = [x[i] - at[0], y[i] - at[1], z[i] - at[2]];
                 let square = dx * dx + dy * dy + dz * dz;
                 let within = square <= self.limits[0];
-                let own = |v: f64| if within { v } else { 0.0 };
+                let own = |v: f32| if within { v } else { 0.0 };
                 let [dx, dy, dz] = [own(dx), own(dy), own(dz)];
                 sums[0][i] += dx;
                 sums[1][i] += dy;
@@ -200,11 +217,14 @@ impl Job for Within<'_> {
             }
             let mut bits: u32 = bits.iter().sum();
             while bits != 0 {
-                self.near.push((b * WIDTH) as u32 + bits.trailing_zeros());
+                self.near.push((b * WIDEST) as u32 + bits.trailing_zeros());
                 bits &= bits - 1;
             }
         }
-        let total = sums.map(|lanes| lanes.iter().sum::<f64>());
+        let mut total = [0.0; 10];
+        for (total, lanes) in total.iter_mut().zip(&sums) {
+            *total = lanes.iter().map(|v| f64::from(*v)).sum();
+        }
         let [x, y, z, xx, yy, zz, yz, zx, xy, count] = total;
         *self.found =
             Neighbourhood { sum: [x, y, z], square: [xx, yy, zz], mixed: [yz, zx, xy], count };
@@ -219,11 +239,12 @@ pub(crate) fn smallest_axis(covariance: &Matrix3<f64>) -> Option<Direction> {
         return None;
     }
     let (values, axis) = least_axis(&(covariance / scale));
-    sound_axis(values, axis)
+    sound_axis(values, axis, 1e-9)
 }
 
-fn sound_axis(values: [f64; 3], axis: Vector) -> Option<Direction> {
-    (values[1] >= 1e-9).then(|| Direction::new_normalize(axis))
+/// An axis, unless the middle eigenvalue is no more than rounding.
+fn sound_axis(values: [f64; 3], axis: Vector, rounding: f64) -> Option<Direction> {
+    (values[1] >= rounding).then(|| Direction::new_normalize(axis))
 }
 
 #[cfg(test)]
@@ -245,18 +266,18 @@ mod tests {
         let apart = |p: &Point| (p - at).norm();
         points.iter().filter(|p| apart(p) <= radius).for_each(|p| known.add(&(p - at)));
         assert!(found.count == known.count && known.count > 6.0);
-        assert!((found.covariance() - known.covariance()).norm() < 1e-15);
+        assert!((found.covariance() - known.covariance()).norm() < 1e-8);
         let among: Vec<u32> = (0..61).filter(|i| apart(&points[*i as usize]) < nearer).collect();
         assert_eq!(near, among);
         let far = at + Vector::new(0.0, 0.3, 0.0);
         let least = points.iter().map(|p| (p - far).norm_squared()).fold(f64::INFINITY, f64::min);
-        assert!((places.nearest(&[far, far * 2.0]) - least).abs() < 1e-15);
+        assert!((places.nearest(&[far, far * 2.0]) - least).abs() < 1e-8);
         let outward = |_: usize| Vector::x();
         let [normal, none] =
             [0, 1].map(|k| Neighbourhood::normals(&[found, Neighbourhood::default()], outward)[k]);
         assert!(
             none.is_none()
-                && normal.unwrap().dot(&known.normal(&Vector::x()).unwrap()) > 1.0 - 1e-9
+                && normal.unwrap().dot(&known.normal(&Vector::x()).unwrap()) > 1.0 - 1e-6
         );
     }
 
