@@ -131,3 +131,52 @@ impl Job for Classes<'_> {
         self.classes.extend(rest.iter().map(|p| self.margins.class(p)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::PointCloud;
+    use crate::numeric::random::Stream;
+    use crate::segment::sight::depth_noise;
+    use crate::segment::table::find;
+
+    #[test]
+    fn heights_are_told_apart_by_margins() {
+        let mut random = Stream::new(2, 0);
+        // a table 0.8 m below the sensor, and points over and under it
+        let mut points: Vec<Point> = (0..3000)
+            .map(|_| Point::new(random.between(-0.4, 0.4), random.between(-0.3, 0.3), 0.8))
+            .collect();
+        points.iter_mut().for_each(|p| p.z += 0.001 * random.normal());
+        let mut cloud = PointCloud::from_points(points);
+        cloud.viewpoint = Some(Point::origin());
+        let all: Vec<u32> = (0..3000).collect();
+        let (support, sight) = find(&cloud, &all, &mut random).unwrap();
+        let options = SegmentOptions::default();
+        let margins = Margins::of(&support, &sight, &options);
+        let at = |height: f64| Point::new(0.1, 0.05, 0.8 - height);
+        let range = (at(0.0) - Point::origin()).norm();
+        let width = WIDTHS * depth_noise(range) * 0.8 / range + FLOOR;
+        let known = DEVIATIONS * support.relative * width + UNEVEN + BEND * range * range;
+        assert!((margins.at(&at(0.0)) - known).abs() < 1e-4, "{known}");
+        let heights = [2.0 * known, 0.8 * known, 0.1 * known, -0.05, -0.2, f64::NAN, -1e9];
+        let classes = [
+            Class::Above,
+            Class::Low,
+            Class::Other,
+            Class::Other,
+            Class::Beneath,
+            Class::Missing,
+            Class::Missing,
+        ];
+        let points: Vec<Point> =
+            heights.iter().cycle().take(3 * WIDTH + 2).map(|h| at(*h)).collect();
+        let found = margins.classes(&points);
+        for (k, class) in found.iter().enumerate() {
+            assert_eq!((*class, margins.class(&points[k])), (classes[k % 7], classes[k % 7]));
+        }
+        let given = SegmentOptions { margin: Some(0.05), ..options };
+        let margins = Margins::of(&support, &sight, &given);
+        assert_eq!([0.06, 0.03].map(|h| margins.class(&at(h))), [Class::Above, Class::Low]);
+    }
+}

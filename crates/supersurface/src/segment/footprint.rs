@@ -205,6 +205,7 @@ fn turn(a: Spot, b: Spot, c: Spot) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random::Stream;
 
     fn square(x: f64, y: f64, side: f64) -> Outline {
         let mut spots = Vec::new();
@@ -225,6 +226,20 @@ mod tests {
         assert_eq!(a.common(&square(5.0, 5.0, 1.0)).area(), 0.0);
         assert!(a.holds(&[0.5, 1.0], 0.499) && !a.holds(&[0.5, 1.0], 0.501));
         assert!(a.holds(&[3.0, 1.0], -1.01) && !a.holds(&[3.0, 1.0], -0.99));
+    }
+
+    #[test]
+    fn hulls_of_many_are_those_of_all() {
+        let mut random = Stream::new(8, 0);
+        let spots: Vec<Spot> =
+            (0..500).map(|_| [random.normal(), 0.3 * random.normal() + 5.0]).collect();
+        let outline = Outline::around(&mut spots.clone());
+        assert!(spots.iter().all(|s| outline.holds(s, -1e-12)));
+        // each corner is one that the others do not hold
+        for corner in outline.corners() {
+            let mut others: Vec<Spot> = spots.iter().filter(|s| *s != corner).copied().collect();
+            assert!(!Outline::around(&mut others).holds(corner, 0.0));
+        }
     }
 
     #[test]
