@@ -2,12 +2,12 @@
 //!
 //! It is above when it is higher than the noise of the support's readings explains, and the camera's own distortion, which
 //! bends flat things with the distance r: over 3 relative (3 sigma(r) |n·e| + floor) + 1 mm + 1.5 mm/m² min(r, 3 m)², with
-//! the widths of [`planes`](super::planes) and e the ray of unit length.
+//! the widths of a [`reading`](super::reading) and e the ray of unit length.
 
 use crate::Point;
 use crate::numeric::lanes::{Job, WIDTH, dispatch};
 use crate::segment::SegmentOptions;
-use crate::segment::planes::{BLIND, FLOOR, WIDTHS};
+use crate::segment::reading::{BLIND, FLOOR, WIDTHS};
 use crate::segment::sight::{NOISE_FLOOR, NOISE_GROWTH, NOISE_RANGE, REACH, Sight};
 use crate::segment::table::Support;
 

@@ -7,7 +7,8 @@
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::random::Stream;
 use crate::segment::footprint::{Ground, Outline, Rectangle, Spot, spot_on};
-use crate::segment::planes::{Candidate, Reading, dominant, readings, spread};
+use crate::segment::planes::{Candidate, dominant, spread};
+use crate::segment::reading::{Reading, readings};
 use crate::segment::sight::{Sight, grid};
 use crate::shape::Plane;
 use crate::{Direction, Point};

@@ -10,6 +10,7 @@
 mod boards;
 mod class;
 mod clusters;
+mod columns;
 mod convexity;
 mod facets;
 mod footprint;
@@ -22,6 +23,7 @@ mod patches;
 mod piece;
 mod planes;
 mod raster;
+mod reading;
 mod room;
 mod sight;
 mod solids;

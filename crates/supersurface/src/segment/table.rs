@@ -8,10 +8,10 @@
 use crate::cloud::{PointCloud, VoxelGrid};
 use crate::numeric::column::Column;
 use crate::numeric::random::Stream;
+use crate::segment::columns::Columns;
 use crate::segment::footprint::{Ground, Outline, Spot, spot_on};
-use crate::segment::planes::{
-    Candidate, Columns, Reading, TRIALS, dominant, height, readings, spread,
-};
+use crate::segment::planes::{Candidate, TRIALS, dominant, spread};
+use crate::segment::reading::{Reading, height, readings};
 use crate::segment::sight::Sight;
 use crate::shape::Plane;
 use crate::{Direction, Point};

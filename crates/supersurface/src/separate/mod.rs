@@ -1,9 +1,9 @@
 //! Floor 8: things that touch, told apart; pieces of one thing, put together.
 //!
-//! What stands on a support comes as clumps. Each is cut at its concave edges, and where two bodies explain a piece that none
-//! explains. Pieces are joined again where there is a reason to and one surface explains them about as well as their own do
-//! ([`Reason`]). That alone is no reason: two
-//! boxes of the same footprint, one on the other, are explained by one box.
+//! What stands on a support comes as clumps. One that one body explains but for noise is a thing. Each other is cut at its
+//! concave edges; where one body does not explain all parts after all, a part is cut that two bodies explain and one does
+//! not. Pieces are joined again where there is a reason to and one surface explains them about as well as their own do
+//! ([`Reason`]). That alone is no reason: two boxes of the same footprint, one on the other, are explained by one box.
 //!
 //! The reasons to join pieces are seen in the image: clouds of several views, which are none, keep their pieces but for
 //! clumps that are one body.
