@@ -238,15 +238,13 @@ pub(crate) fn refine(
     // From the eye's frame to the cloud's.
     let origin = cloud.points.get(*sample.first()? as usize)?.coords - all.first()?.ray;
     let (mut normal, mut offset) = (plane.normal(), plane.height(&Point::from(origin)));
-    let (mut relative, mut inside) = (0.0, Columns::default());
+    let (mut relative, mut inside) = (0.0, Columns::of(all.iter()));
     let place = |r: &Reading| Point::from(r.ray + origin);
     let mut shares = Column::default();
-    // first by some, then by all
-    for thinned in [4, 1] {
+    for _ in 0..2 {
         // The plane runs on through other things, which would tilt it: only its main piece counts.
         let ground = Ground::of(&Plane::new(normal.into_inner(), offset).ok()?);
         let outline = main_piece(&all, &normal, offset, PIECE_GAP, |r| ground.spot(&place(r)))?;
-        inside = Columns::of(all.iter().step_by(thinned));
         inside.count_within(&outline, &ground, &origin);
         let mut share = 1.0;
         for _ in 0..3 {
