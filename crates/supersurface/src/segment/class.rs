@@ -54,7 +54,7 @@ impl Margins {
     pub(crate) fn of(support: &Support, sight: &Sight, options: &SegmentOptions) -> Self {
         let noise = DEVIATIONS * support.relative;
         let [least, spread, bend] = match (options.margin, sight.eye) {
-            (Some(margin), _) => [margin, 0.0, 0.0],
+            (Some(margin), _) => [margin.max(0.0), 0.0, 0.0],
             (None, Some(_)) => [noise * FLOOR + UNEVEN, noise * WIDTHS, BEND],
             (None, None) => [noise * BLIND + UNEVEN, 0.0, 0.0],
         };
@@ -178,5 +178,9 @@ mod tests {
         let given = SegmentOptions { margin: Some(0.05), ..options };
         let margins = Margins::of(&support, &sight, &given);
         assert_eq!([0.06, 0.03].map(|h| margins.class(&at(h))), [Class::Above, Class::Low]);
+        // a margin under the support is none
+        let given = SegmentOptions { margin: Some(-0.05), ..given };
+        let margins = Margins::of(&support, &sight, &given);
+        assert_eq!([0.01, -0.03].map(|h| margins.class(&at(h))), [Class::Above, Class::Other]);
     }
 }
