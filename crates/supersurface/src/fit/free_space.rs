@@ -10,6 +10,12 @@ use crate::cloud::PointCloud;
 use crate::numeric::lanes::{Job, WIDTH, dispatch};
 use crate::{Point, Vector};
 
+/// The reading of a cell that has none.
+const UNREAD: u32 = u32::MAX;
+/// Marks of cells while steps are counted: of the frame around them, outside, and blocked.
+const FRAME: u16 = u16::MAX - 2;
+const OUTSIDE: u16 = u16::MAX - 1;
+const BLOCKED: u16 = u16::MAX;
 /// Most free points that are returned.
 const MOST: usize = 140;
 /// Cells on the longer side of the object's picture.
@@ -30,39 +36,47 @@ pub fn free_points(cloud: &PointCloud, object: &[u32]) -> Vec<Point> {
 pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) -> Vec<Point> {
     let Some((picture, own)) = Picture::of(cloud, object) else { return Vec::new() };
     let blocked = picture.dilated(&picture.mask(&own));
-    let mut read = vec![None; blocked.len()];
+    let mut read = vec![UNREAD; blocked.len()];
     let (width, [u0, u1, v0, v1], step) = match (cloud.grid, bounds(cloud, object)) {
         (Some([width, _]), Some([u0, u1, v0, v1])) => {
             (width, [u0, u1, v0, v1], ((u1 - u0).max(v1 - v0) / most).max(1))
         }
         _ => (cloud.points.len(), [0, cloud.points.len().saturating_sub(1), 0, 0], 1),
     };
-    let mut look = |p: &Point, cell: usize| {
-        if !blocked[cell] && read[cell].is_none() {
-            read[cell] = Some(*p);
-        }
-    };
     for v in (v0..=v1).step_by(step) {
-        let row = cloud.points.get(v * width + u0..=v * width + u1).unwrap_or_default();
+        let first = v * width + u0;
+        let row = cloud.points.get(first..=v * width + u1).unwrap_or_default();
+        let mut look = |k: usize, cell: usize| {
+            if !blocked[cell] && read[cell] == UNREAD {
+                read[cell] = (first + k) as u32;
+            }
+        };
         dispatch(Cells { picture: &picture, row, step, look: &mut look });
     }
     let steps = picture.steps_outside(&blocked);
-    let depths = depths(&own);
-    let seen = (0..read.len()).filter_map(|c| read[c].map(|p| (steps[c], p)));
-    let gaps = picture
-        .gaps(&steps, &read, depths[0])
-        .map(|c| (steps[c], picture.point(c, 3.0 * depths[1])));
-    let mut found: Vec<(u16, Point)> = seen.chain(gaps).collect();
-    found.sort_by_key(|f| f.0);
-    if found.len() <= MOST {
-        return found.into_iter().map(|f| f.1).collect();
-    }
+    let [nearest, farthest] = depths(&own);
+    let reading = |cell: usize| cloud.points.get(read[cell] as usize).copied();
+    // by their steps, gaps after readings: both as one number, which is sorted faster
+    let all = read.len();
+    let key = |cell: usize, k: usize| u64::from(steps[cell]) << 32 | k as u64;
+    let seen = (0..all).filter(|c| read[*c] != UNREAD).map(|c| key(c, c));
+    let mut found: Vec<u64> = seen.collect();
+    found.extend(picture.gaps(&steps, reading, nearest).map(|c| key(c, all + c)));
+    found.sort_unstable();
+    let point = |key: u64| {
+        let k = key as u32 as usize;
+        let gap = || picture.point(k - all, 3.0 * farthest);
+        if k < all { reading(k).unwrap_or_else(gap) } else { gap() }
+    };
     // squares: most of what a body could wrongly grow into lies next to what is seen of it
     let at = |i: usize| i * i * found.len() / (MOST * MOST);
-    (0..MOST).map(|i| found[at(i)].1).collect()
+    match found.len() <= MOST {
+        true => found.into_iter().map(point).collect(),
+        false => (0..MOST).map(|i| point(found[at(i)])).collect(),
+    }
 }
 
-/// Finds the cells of every so-many-th point of a row.
+/// Finds the cells of every so-many-th point of a row, by its place in it.
 struct Cells<'a, F> {
     picture: &'a Picture,
     row: &'a [Point],
@@ -70,13 +84,13 @@ struct Cells<'a, F> {
     look: &'a mut F,
 }
 
-impl<F: FnMut(&Point, usize)> Job for Cells<'_, F> {
+impl<F: FnMut(usize, usize)> Job for Cells<'_, F> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let Self { picture, row, step, look } = self;
         let Picture { viewpoint: eye, forward, right, down, corner, fineness, .. } = picture;
         let size = [picture.width as f64, picture.height as f64];
-        for block in row.chunks(WIDTH * step) {
+        for (k, block) in row.chunks(WIDTH * step).enumerate() {
             // what a short block lacks is in no cell
             let mut at = [[f64::NAN; WIDTH]; 3];
             for (i, p) in block.iter().step_by(step).enumerate() {
@@ -94,9 +108,9 @@ impl<F: FnMut(&Point, usize)> Job for Cells<'_, F> {
                     (depth > 0.0) & (u >= 0.0) & (v >= 0.0) & (u < size[0]) & (v < size[1]);
                 cells[i] = if inside { v.floor() * size[0] + u.floor() } else { -1.0 };
             }
-            for (p, cell) in block.iter().step_by(step).zip(cells) {
+            for (i, cell) in cells.into_iter().enumerate() {
                 if cell >= 0.0 {
-                    look(p, cell as usize);
+                    look((k * WIDTH + i) * step, cell as usize);
                 }
             }
         }
@@ -256,7 +270,7 @@ impl Picture {
     fn gaps<'a>(
         &'a self,
         steps: &'a [u16],
-        read: &'a [Option<Point>],
+        reading: impl Fn(usize) -> Option<Point> + Copy + 'a,
         nearest: f64,
     ) -> impl Iterator<Item = usize> + 'a {
         let size = [self.width as f64, self.height as f64];
@@ -267,11 +281,11 @@ impl Picture {
             let met = (1..BORDER as usize).find_map(|k| {
                 let [u, v] = [0, 1].map(|i| from[i] + away[i] / length * k as f64);
                 let inside = u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
-                read[inside.then(|| v as usize * self.width + u as usize)?]
+                reading(inside.then(|| v as usize * self.width + u as usize)?)
             });
             met.is_some_and(|p| (p - self.viewpoint).dot(&self.forward) > nearest)
         };
-        ring(steps).filter(|c| read[*c].is_none()).filter(is_gap)
+        ring(steps).filter(move |c| reading(*c).is_none()).filter(is_gap)
     }
 
     /// The point at `depth` along the viewing direction in the middle of a cell.
@@ -286,15 +300,33 @@ impl Picture {
     /// How many cells each cell is away from the blocked ones on ways outside; 0 for these and for cells that
     /// they enclose.
     fn steps_outside(&self, blocked: &[bool]) -> Vec<u16> {
-        let outside = self.outside(blocked);
-        let mut steps = vec![0; blocked.len()];
-        let mut edge: Vec<usize> = (0..blocked.len()).filter(|c| blocked[*c]).collect();
-        for step in 1.. {
+        // with a frame of one more cell all around, so that each cell has four neighbours
+        let wide = self.width + 2;
+        let beside = |c: usize| [c - 1, c + 1, c - wide, c + wide];
+        let mut steps = vec![FRAME; wide * (self.height + 2)];
+        let mut open = Vec::new();
+        for (v, row) in blocked.chunks(self.width).enumerate() {
+            for (u, blocked) in row.iter().enumerate() {
+                let cell = (v + 1) * wide + u + 1;
+                steps[cell] = if *blocked { BLOCKED } else { 0 };
+                if u == 0 || u + 1 == self.width || v == 0 || v + 1 == self.height {
+                    open.push(cell);
+                }
+            }
+        }
+        while let Some(cell) = open.pop() {
+            if steps[cell] == 0 {
+                steps[cell] = OUTSIDE;
+                open.extend(beside(cell).into_iter().filter(|c| steps[*c] == 0));
+            }
+        }
+        let mut edge: Vec<usize> = (0..steps.len()).filter(|c| steps[*c] == BLOCKED).collect();
+        for step in 1..FRAME {
             let mut next = Vec::new();
-            for c in edge.drain(..).flat_map(|c| self.neighbours(c)) {
-                if outside[c] && steps[c] == 0 {
-                    steps[c] = step;
-                    next.push(c);
+            for cell in edge.into_iter().flat_map(beside) {
+                if steps[cell] == OUTSIDE {
+                    steps[cell] = step;
+                    next.push(cell);
                 }
             }
             if next.is_empty() {
@@ -302,35 +334,9 @@ impl Picture {
             }
             edge = next;
         }
-        steps
-    }
-
-    /// The cells that are joined to the picture's border by cells that are not blocked.
-    fn outside(&self, blocked: &[bool]) -> Vec<bool> {
-        let (w, h) = (self.width, self.height);
-        let mut seen = vec![false; blocked.len()];
-        let mut open: Vec<usize> = (0..blocked.len())
-            .filter(|c| c % w == 0 || c % w == w - 1 || c / w == 0 || c / w == h - 1)
-            .collect();
-        while let Some(c) = open.pop() {
-            if blocked[c] || std::mem::replace(&mut seen[c], true) {
-                continue;
-            }
-            open.extend(self.neighbours(c));
-        }
-        seen
-    }
-
-    /// The four cells beside a cell; at the picture's border the cell itself instead.
-    fn neighbours(&self, c: usize) -> [usize; 4] {
-        let (w, h) = (self.width, self.height);
-        let (u, v) = (c % w, c / w);
-        [
-            if u > 0 { c - 1 } else { c },
-            if u + 1 < w { c + 1 } else { c },
-            if v > 0 { c - w } else { c },
-            if v + 1 < h { c + w } else { c },
-        ]
+        let rows = steps.chunks(wide).skip(1).take(self.height);
+        let cells = rows.flat_map(|row| &row[1..=self.width]);
+        cells.map(|step| if *step < FRAME { *step } else { 0 }).collect()
     }
 
     /// The mask with `MARGIN` more cells on each side.

@@ -28,6 +28,10 @@ const FAR: f64 = 0.01;
 const PLAIN: f64 = 0.8;
 const STRAYS: f64 = 0.01;
 const STRAY: f64 = 4.0;
+/// Points of each of two pieces by which it is asked whether something convex has both, and how far one of them must lie
+/// outside a plane that touches the other to speak against that, in metres.
+const PLANES: usize = 24;
+const BEYOND: f64 = 0.008;
 /// Cosine between an upright ring's axis and the support's normal, at least.
 const UPRIGHT: f64 = 0.7;
 
@@ -137,6 +141,28 @@ impl Around<'_> {
         }
         let due = points.len() / SECTORS;
         found.iter().filter(|n| **n * SPARSE >= due).count() >= AROUND
+    }
+
+    /// Share of some points that lie clearly outside the planes that touch a surface at some of its own points: none does of
+    /// what is convex and has both. Planes turned from the eye count for nothing, as there the surface is a guess.
+    pub(super) fn share_beyond(&self, own: &[u32], fit: &Fit, points: &[u32]) -> f64 {
+        let some = |of: &[u32]| {
+            let places = of.iter().step_by(of.len().div_ceil(PLANES).max(1));
+            places.map(|i| self.cloud.points[*i as usize]).collect::<Vec<Point>>()
+        };
+        let seen =
+            |p: &Point, out: &Vector| self.cloud.viewpoint.is_none_or(|e| out.dot(&(e - p)) > 0.0);
+        let (mut beyond, mut all) = (0, 0);
+        let others = some(points);
+        for p in some(own) {
+            let Some(out) = fit.surface.gradient(&p).try_normalize(0.0).filter(|out| seen(&p, out))
+            else {
+                continue;
+            };
+            all += others.len();
+            beyond += others.iter().filter(|q| out.dot(&(*q - p)) > BEYOND).count();
+        }
+        f64::from(beyond as u32) / all.max(1) as f64
     }
 
     /// Median of the distances of some of the points from a surface, in metres.

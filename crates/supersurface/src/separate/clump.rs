@@ -121,8 +121,8 @@ impl Trial<'_> {
     /// Whether it, or a ring, is near to all parts.
     fn is_alike(&self, parts: &[Piece]) -> bool {
         let (seen, convex) = self.rough();
-        let is_near = |fit: &Fit| is_near(self.scene, fit, parts);
-        convex.as_ref().is_some_and(is_near) || seen.fit(&AS_RING).is_ok_and(|fit| is_near(&fit))
+        let does = |fit: &Fit| does_as_well(self.scene, fit, parts);
+        convex.as_ref().is_some_and(does) || seen.fit(&AS_RING).is_ok_and(|fit| does(&fit))
     }
 }
 
@@ -131,16 +131,17 @@ fn sum(parts: &[Piece], of: impl Fn(&Piece) -> f64) -> f64 {
     parts.iter().map(|p| of(p) * p.points.len() as f64).sum()
 }
 
-/// Whether a body is not much farther from the parts than their own are.
-fn is_near(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
-    sum(parts, |p| scene.rough(&p.points, body)) < UNLIKE * sum(parts, |p| p.rough)
+/// Whether a body is not much farther from the parts than their own are, nor are these plainly better.
+fn does_as_well(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
+    let count = sum(parts, |_| 1.0);
+    let left = sum(parts, |p| scene.rough(&p.points, body)) / count;
+    let own = sum(parts, |p| p.rough) / count;
+    left < UNLIKE * own && !is_better(scene, left, own)
 }
 
 /// Whether one body explains all parts of a clump.
 fn explains(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
-    let count = sum(parts, |_| 1.0);
-    let left = sum(parts, |p| scene.rough(&p.points, body)) / count;
-    if !is_near(scene, body, parts) || is_better(scene, left, sum(parts, |p| p.rough) / count) {
+    if !does_as_well(scene, body, parts) {
         return false;
     }
     let unexplained = |worse: f64, slight: f64| {
@@ -149,5 +150,5 @@ fn explains(scene: &Around<'_>, body: &Fit, parts: &[Piece]) -> bool {
     };
     let hollow = matches!(body.surface.shape(), Surface::Supertoroid(_));
     unexplained(WORSE, SLIGHT) == 0.0
-        || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * count
+        || hollow && unexplained(HOLLOW_WORSE, HOLLOW_SLIGHT) < HANDLE * sum(parts, |_| 1.0)
 }

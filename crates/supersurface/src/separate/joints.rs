@@ -28,6 +28,10 @@ const POOR: f64 = 0.003;
 const ROUGHER: f64 = 2.5;
 /// Share of what is between two ends of a thing that may be seen to be empty.
 const HOLES: f64 = 0.15;
+/// Share of a piece that lies outside planes which touch the other from which nothing convex has both, and points of a
+/// piece that tell how it is turned.
+const OUTER: f64 = 0.25;
+const TURNED: usize = 1000;
 /// What contradicted lines of sight cost, as a multiple of their share.
 const AGAINST: f64 = 3.3;
 /// What a surface that goes on behind something may cost.
@@ -130,6 +134,17 @@ impl Pair<'_> {
         self.pieces.iter().map(cost).fold(0.0, f64::max)
     }
 
+    /// False where one piece lies outside planes that touch the other's surface; a small one hardly tells how it is turned.
+    fn may_be_convex(&self) -> bool {
+        let [a, b] = self.pieces;
+        let outside = |own: &Piece, other: &Piece| {
+            let tells = own.points.len() >= TURNED.min(other.points.len());
+            let fit = own.fit.as_ref().ok().filter(|_| tells);
+            fit.is_some_and(|fit| self.scene.share_beyond(&own.points, fit, &other.points) > OUTER)
+        };
+        !outside(a, b) && !outside(b, a)
+    }
+
     /// Two ends of what something nearer hides.
     fn behind(&self, outlines: [&[u32]; 2]) -> Option<f64> {
         if self.border.touching > APART || !self.view.hides_between(outlines[0], outlines[1]) {
@@ -137,6 +152,9 @@ impl Pair<'_> {
         }
         let [a, b] = self.pieces.map(|p| &p.points[..]);
         if self.view.empty_between(a, b) > HOLES {
+            return None;
+        }
+        if !self.may_be_convex() {
             return None;
         }
         let fit = self.fit()?;
