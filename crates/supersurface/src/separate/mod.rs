@@ -132,19 +132,18 @@ pub fn separate(
     }
     things.sort_by_key(|(thing, _)| thing.points.first().copied());
     let left = left_over(&segmentation.objects, &things, cloud.points.len());
-    let frame = Frame::of(cloud);
     let beside = beside(&segmentation.dropped);
-    let why = |thing: &Thing, support: Option<&Support>| {
-        let cut = frame.is_some_and(|f| f.cuts(&thing.points));
-        let goes_on = || support.is_some_and(|s| goes_on(cloud, thing, s, &beside));
-        if cut { Some(DropReason::CutOff) } else { goes_on().then_some(DropReason::OffSupport) }
-    };
+    let cut = cut_off(cloud, &segmentation.objects, &things);
     let mut kept = Vec::with_capacity(things.len());
-    for (thing, k) in things {
+    for ((thing, k), is_cut) in things.into_iter().zip(cut) {
         let support = segmentation.supports.get(k);
-        let Some(reason) = why(&thing, support) else {
-            kept.push((thing, k));
-            continue;
+        let reason = match support {
+            _ if is_cut => DropReason::CutOff,
+            Some(support) if goes_on(cloud, &thing, support, &beside) => DropReason::OffSupport,
+            _ => {
+                kept.push((thing, k));
+                continue;
+            }
         };
         segmentation.dropped.push(match support {
             Some(support) => Dropped::new(&cloud.points, thing.points, reason, &support.plane),
@@ -162,6 +161,21 @@ pub fn separate(
     segmentation.objects = things.iter().map(|(thing, _)| thing.points.clone()).collect();
     segmentation.stands_on = things.iter().map(|(_, k)| *k).collect();
     things.into_iter().map(|(thing, _)| thing).collect()
+}
+
+/// Which things the border of the image cuts off: none that touches one that is seen whole.
+fn cut_off(cloud: &PointCloud, clumps: &[Vec<u32>], things: &[(Thing, usize)]) -> Vec<bool> {
+    let Some(frame) = Frame::of(cloud) else { return vec![false; things.len()] };
+    let mut cut: Vec<bool> = things.iter().map(|(thing, _)| frame.cuts(&thing.points)).collect();
+    let clump = |k: usize| {
+        let first = things[k].0.points.first();
+        clumps.iter().position(|c| first.is_some_and(|i| c.binary_search(i).is_ok()))
+    };
+    if cut.contains(&true) {
+        let whole: Vec<_> = (0..cut.len()).filter(|k| !cut[*k]).map(clump).collect();
+        cut.iter_mut().enumerate().for_each(|(k, cut)| *cut &= !whole.contains(&clump(k)));
+    }
+    cut
 }
 
 /// The points of what stands beside the supports.

@@ -1,6 +1,7 @@
 //! What the image tells of two pieces: where they meet, and whether something hides what is between them.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::cloud::PointCloud;
 use crate::fit::Fit;
@@ -27,6 +28,8 @@ const ACROSS: usize = 6;
 const OUTLINE: usize = 120;
 /// Longest way between two pieces, as a share of the image's width.
 const FARTHEST: f64 = 0.22;
+/// Ways between two pieces that are looked at where the shortest is not hidden.
+const SPREAD: usize = 12;
 /// How much nearer or farther than the way between two pieces something hides it or shows that it is empty, in metres.
 const NEARER: f64 = 0.006;
 const FARTHER: f64 = 0.008;
@@ -164,62 +167,72 @@ impl<'a> View<'a> {
         edge.iter().step_by(edge.len().div_ceil(OUTLINE).max(1)).copied().collect()
     }
 
-    /// True where something nearer hides what is between two pieces, given by their outlines.
+    /// True where something nearer hides what is between two pieces, given by their outlines: on the shortest way from one to
+    /// the other, or on the whole of some ways, as that may lead along the foot of what hides them.
     pub(super) fn hides_between(&self, a: &[u32], b: &[u32]) -> bool {
-        let place = |i: u32| {
-            let i = i as usize;
-            [(i % self.width) as f64, (i / self.width) as f64]
-        };
         let farthest = FARTHEST * self.width as f64;
-        let boxes = [a, b].map(|outline| {
-            let places = || outline.iter().map(|i| place(*i));
-            let by = |k: usize, f: fn(f64, f64) -> f64| places().map(|p| p[k]).reduce(f);
+        let [places, others] =
+            [a, b].map(|outline| outline.iter().map(|i| self.place(*i)).collect::<Vec<_>>());
+        let boxes = [&places, &others].map(|places| {
+            let by = |k: usize, f: fn(f64, f64) -> f64| places.iter().map(|p| p[k]).reduce(f);
             [0, 1].map(|k| [by(k, f64::min), by(k, f64::max)].map(Option::unwrap_or_default))
         });
         let gap = |k: usize| (boxes[1][k][0] - boxes[0][k][1]).max(boxes[0][k][0] - boxes[1][k][1]);
         if gap(0).max(gap(1)) > farthest {
             return false;
         }
-        // the nearest pair; a place is passed over whose way to the other's box is longer
-        let outside = |p: [f64; 2], k: usize| {
+        let outside = |p: &[f64; 2], k: usize| {
             (boxes[1][k][0] - p[k]).max(p[k] - boxes[1][k][1]).max(0.0).powi(2)
         };
-        let others: Vec<[f64; 2]> = b.iter().map(|j| place(*j)).collect();
-        let (mut square, mut nearest) = (f64::INFINITY, None);
-        for i in a {
-            let p = place(*i);
-            if outside(p, 0) + outside(p, 1) < square {
-                for (j, q) in b.iter().zip(&others) {
-                    let apart = (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
-                    if apart < square {
-                        (square, nearest) = (apart, Some((i, j)));
+        let shortest = |from: Range<usize>| {
+            let (mut square, mut way) = (farthest * farthest, None);
+            for i in from {
+                let p = &places[i];
+                // a place is passed over whose way to the other's box is longer
+                if outside(p, 0) + outside(p, 1) < square {
+                    for (j, q) in others.iter().enumerate() {
+                        let apart = (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
+                        if apart < square {
+                            (square, way) = (apart, Some([a[i], b[j]]));
+                        }
                     }
                 }
             }
-        }
-        let Some((i, j)) = nearest else { return false };
-        let length = square.sqrt();
-        if length > farthest {
-            return false;
-        }
-        let (from, to) = (place(*i), place(*j));
-        let ends = [*i, *j].map(|i| self.range(i as usize).recip());
-        let steps = (length as usize).max(1);
+            way
+        };
+        let Some(first) = shortest(0..a.len()) else { return false };
+        let step = a.len().div_ceil(SPREAD).max(1);
+        let all_over = (0..a.len()).step_by(step).filter_map(|i| shortest(i..i + 1));
+        self.is_hidden(std::iter::once(first)) || self.is_hidden(all_over)
+    }
+
+    /// Whether of the places on some ways between two pixels enough are hidden and few are seen to be empty.
+    fn is_hidden(&self, ways: impl Iterator<Item = [u32; 2]>) -> bool {
         let (mut hidden, mut empty, mut all) = (0.0, 0.0, 0.0);
-        for k in 1..steps {
-            let share = k as f64 / steps as f64;
-            let [u, v] = [0, 1].map(|k| (from[k] + share * (to[k] - from[k])).round() as usize);
-            let at = v * self.width + u;
-            let between = (ends[0] + share * (ends[1] - ends[0])).recip();
-            let seen = self.range(at);
-            all += 1.0;
-            if seen.is_nan() || seen < between - NEARER {
-                hidden += 1.0;
-            } else if seen > between + FARTHER {
-                empty += 1.0;
+        for ends in ways {
+            let [from, to] = ends.map(|i| self.place(i));
+            let ranges = ends.map(|i| self.range(i as usize).recip());
+            let steps = (from[0] - to[0]).hypot(from[1] - to[1]) as usize;
+            for k in 1..steps {
+                let share = k as f64 / steps as f64;
+                let [u, v] = [0, 1].map(|k| (from[k] + share * (to[k] - from[k])).round() as usize);
+                let between = (ranges[0] + share * (ranges[1] - ranges[0])).recip();
+                let seen = self.range(v * self.width + u);
+                all += 1.0;
+                if seen.is_nan() || seen < between - NEARER {
+                    hidden += 1.0;
+                } else if seen > between + FARTHER {
+                    empty += 1.0;
+                }
             }
         }
         all > 0.0 && hidden >= HIDDEN * all && empty < EMPTY * all
+    }
+
+    /// Column and row of a pixel.
+    fn place(&self, pixel: u32) -> [f64; 2] {
+        let i = pixel as usize;
+        [(i % self.width) as f64, (i / self.width) as f64]
     }
 
     /// Share of the places between two pieces that are seen to be empty: what is convex and has both fills them.

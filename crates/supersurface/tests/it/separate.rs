@@ -1,5 +1,6 @@
 //! What touches is told apart, what belongs together is put together, and the report says why.
 
+use nalgebra::UnitQuaternion;
 use supersurface::cloud::PointCloud;
 use supersurface::fit::FitOptions;
 use supersurface::segment::{DropReason, SegmentOptions, Segmentation, segment};
@@ -108,6 +109,33 @@ fn what_the_border_of_the_image_cuts_off_is_left_out() {
     assert_eq!(objects.len(), 1);
     assert!(recovered(&objects, &truth, 2) > 0.9);
     assert!(segmentation.dropped.iter().any(|d| d.reason == DropReason::CutOff));
+}
+
+#[test]
+fn what_touches_a_whole_thing_at_the_border_is_kept() {
+    let cut = brick(0.4, 0.0, 0.05, [0.1, 0.05, 0.05], 0.0);
+    let whole = brick(0.26, 0.0, 0.03, [0.04, 0.04, 0.03], 0.0);
+    let (cloud, truth) = seen(vec![cut, whole], 13);
+    let (objects, _) = parted(&cloud);
+    let shares = [1, 2].map(|k| recovered(&objects, &truth, k));
+    assert!(objects.len() == 2 && shares.iter().all(|s| *s > 0.85), "{} {shares:?}", objects.len());
+}
+
+#[test]
+fn a_box_behind_something_at_its_foot_is_one() {
+    let far = brick(0.0, 0.08, 0.025, [0.13, 0.03, 0.025], 0.0);
+    // a board on its corner, which stands at the foot of the box and leans away from it
+    let lean = UnitQuaternion::from_axis_angle(&Vector::x_axis(), 0.35)
+        * UnitQuaternion::from_axis_angle(&Vector::y_axis(), std::f64::consts::FRAC_PI_4);
+    let middle = Vector::new(0.0, 0.02, 0.083);
+    let board = table(PITCH) * Pose::from_parts(middle.into(), lean);
+    let near = Thing::Brick(board, Vector::new(0.06, 0.002, 0.06));
+    let (cloud, truth) = seen(vec![far, near], 14);
+    let (objects, _) = parted(&cloud);
+    let shares = [1, 2].map(|k| recovered(&objects, &truth, k));
+    assert!(objects.len() == 2 && shares.iter().all(|s| *s > 0.85), "{} {shares:?}", objects.len());
+    let reasons: Vec<_> = objects.iter().map(|o| o.joined.clone()).collect();
+    assert!(reasons.concat().contains(&Reason::Behind), "{reasons:?}");
 }
 
 #[test]
