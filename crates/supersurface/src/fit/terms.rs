@@ -186,14 +186,16 @@ impl Terms {
         let Some(support) = self.support else { return };
         let sigma = scale.max(support.tolerance);
         let weight = 0.2 * points as f64 / (sigma * sigma);
-        if let Some((height, row)) = extreme::<S>(s, &support.normal, support.offset)
-            && (support.standing || height < 0.0)
-        {
-            to.add(height, weight, &row);
+        let Some((lowest, row)) = extreme::<S>(s, &support.normal, support.offset) else { return };
+        if support.standing || lowest < 0.0 {
+            to.add(lowest, weight, &row);
         }
+        // undeformed bodies are symmetric about their middle, which lies halfway up
+        let middle = support.normal.dot(&s.position) + support.offset;
+        let may_be_over = |top: &f64| s.family.is_deformed() || 2.0 * middle - lowest > *top;
         // the highest point is the lowest of the other side
         let below = |top: f64| extreme::<S>(s, &-support.normal, top - support.offset);
-        if let Some((below, row)) = support.top.and_then(below)
+        if let Some((below, row)) = support.top.filter(may_be_over).and_then(below)
             && below < 0.0
         {
             to.add(below, weight, &row);
