@@ -10,7 +10,7 @@ use crate::cloud::PointCloud;
 use crate::numeric::lanes::{Job, WIDTH, dispatch};
 use crate::{Point, Vector};
 
-/// The reading of a cell that has none.
+/// What stands for the number of a reading in cells that have none.
 const UNREAD: u32 = u32::MAX;
 /// Marks of cells while steps are counted: of the frame around them, outside, and blocked.
 const FRAME: u16 = u16::MAX - 2;
@@ -65,15 +65,14 @@ pub(crate) fn free_points_of(cloud: &PointCloud, object: &[u32], most: usize) ->
     found.sort_unstable();
     let point = |key: u64| {
         let k = key as u32 as usize;
-        let gap = || picture.point(k - all, 3.0 * farthest);
-        if k < all { reading(k).unwrap_or_else(gap) } else { gap() }
+        if k < all { reading(k) } else { Some(picture.point(k - all, 3.0 * farthest)) }
     };
+    if found.len() <= MOST {
+        return found.into_iter().filter_map(point).collect();
+    }
     // squares: most of what a body could wrongly grow into lies next to what is seen of it
     let at = |i: usize| i * i * found.len() / (MOST * MOST);
-    match found.len() <= MOST {
-        true => found.into_iter().map(point).collect(),
-        false => (0..MOST).map(|i| point(found[at(i)])).collect(),
-    }
+    (0..MOST).filter_map(|i| point(found[at(i)])).collect()
 }
 
 /// Finds the cells of every so-many-th point of a row, by its place in it.

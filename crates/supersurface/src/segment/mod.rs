@@ -141,7 +141,7 @@ pub enum DropReason {
     TooLarge,
     /// It stands beside the part of the support that was seen.
     OffSupport,
-    /// The border of the image cuts most of it off.
+    /// The border of the image cuts most of it off, and it touches nothing that is seen whole.
     CutOff,
     /// A small piece in the air, with the support seen under it: stray readings.
     Hanging,

@@ -162,7 +162,7 @@ impl Around<'_> {
             all += others.len();
             beyond += others.iter().filter(|q| out.dot(&(*q - p)) > BEYOND).count();
         }
-        f64::from(beyond as u32) / all.max(1) as f64
+        beyond as f64 / all.max(1) as f64
     }
 
     /// Median of the distances of some of the points from a surface, in metres.

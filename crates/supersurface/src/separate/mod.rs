@@ -114,7 +114,7 @@ impl Piece {
 }
 
 /// The objects that the clumps of a segmentation consist of, in the order of their first points; the segmentation's objects
-/// become these. What the border of the image cuts off is left out.
+/// become these. What the border of the image cuts off is left out, unless it touches a thing that is seen whole.
 pub fn separate(
     cloud: &PointCloud,
     segmentation: &mut Segmentation,
